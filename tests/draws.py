@@ -68,7 +68,7 @@ def draw_with_folds(rng: np.random.Generator) -> System:
 def smallest_slope(system: System, count: int = 10_001) -> float:
     """Return the smallest slope d eta0 / d Omega at the resonance; negative with folds."""
     numerator, denominator = averaged.slope_polynomials(*system)
-    low, peak = averaged.speed_above_box_resonance(*system), averaged.resonance(*system)
+    low, peak = averaged.speed_between_resonances(*system), averaged.bonded_resonance(*system)
     near = peak + averaged.resonance_half_width(*system) * np.linspace(-20.0, 20.0, count)
     speeds = np.concatenate([np.linspace(low, 2.0 * peak, count), near[near > low]])
     return float((numerator(speeds) / denominator(speeds)).min())
@@ -87,8 +87,10 @@ def scale_to_slope(system: System, slope: float) -> System:
 def ramp_ends(system: System) -> tuple[float, float]:
     """Return the two ends of the voltage ramp, over K omega, past both jumps."""
     folds = averaged.folds(*system)
-    resonance = averaged.resonance(*system)
-    places = [fold.eta0 for fold in folds] or [float(averaged.no_load_speed(*system, resonance))]
+    resonance = averaged.bonded_resonance(*system)
+    places = [fold.eta0 for fold in folds] or [
+        float(averaged.stationary_voltage(*system, resonance))
+    ]
     return min(places) - 0.15, max(places) + 0.15
 
 

@@ -125,7 +125,7 @@ class OfRamp(Options):
     def parse_voltages(self, structure: Structure, drive: Drive) -> tuple[float, ...]:
         """Return one voltage or a ramp's first and last one, V; by default around the jumps."""
         from ..weak_drive.couple import require_motor
-        from ..weak_drive.couple_all import voltage_range
+        from ..weak_drive.couple_all import default_eta0_range
 
         self.one_of("eta0", "voltage")
         require_motor(structure, drive)
@@ -141,7 +141,7 @@ class OfRamp(Options):
         if self.drive in USUAL and not has_own_parameters:
             first, last = parse_ends("--eta0", USUAL[self.drive][0])
             return first * volts, last * volts
-        first, last = voltage_range(structure.as_bonded(), drive)
+        first, last = default_eta0_range(structure.as_bonded(), drive)
         return first * volts, last * volts
 
     def parse_ramp_ends(self, structure: Structure, drive: Drive) -> tuple[float, ...]:

@@ -74,12 +74,12 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
             super().__call__()
 
     def make_job(self, structure: Structure, motor: Drive, question: Keywords) -> CoupleJob:
-        from ..weak_drive.couple import couple_job, scheme_from_arguments
+        from ..weak_drive.couple import make_couple_job, scheme_from_arguments
 
         control, step = question["control"], question["step"]
         scheme = scheme_from_arguments(structure, step, question["tolerance"], control is not None)
         more = {"control": control, "hold": question["hold"]}
-        return couple_job(structure, motor, question["voltage"], scheme, **more)
+        return make_couple_job(structure, motor, question["voltage"], scheme, **more)
 
     def compute(
         self, states: Mapping[str, Any], others: Any, question: Keywords, files: Mapping[str, Files]
@@ -303,7 +303,7 @@ def read_values(option: str, texts: Sequence[str]) -> dict[str, Any]:
 
 def variable_lines(drive: Path) -> Iterator[str]:
     from ..fmu.description import describe
-    from ..weak_drive.connection import MOTION, proposals, reason_for
+    from ..weak_drive.connection import MOTION, explain_proposal, propose_connections
 
     description = describe(drive)
     yield f"{description.name}, FMI {description.fmi_version}"
@@ -317,11 +317,11 @@ def variable_lines(drive: Path) -> Iterator[str]:
         "description": [one.description or "" for _, one in listed],
     }
     yield from printing.table(columns)
-    if likely := proposals(description):
+    if likely := propose_connections(description):
         links = " ".join(f"{ours}={theirs}" for ours, theirs in likely.items())
         yield f"likely: --connect {links}   (a run checks the sign of the force)"
         for ours, theirs in likely.items():
-            yield f"  {ours:17} {theirs}: {reason_for(description, ours, theirs)}"
+            yield f"  {ours:17} {theirs}: {explain_proposal(description, ours, theirs)}"
     else:
         outputs = " ".join(f"{ours}=OUTPUT" for ours in MOTION)
         text = f"--connect {outputs} box_force=INPUT (one motion is enough, all are more exact)"

@@ -26,7 +26,7 @@ from ..units import Units, display_units_of
 from ..version import __version__
 from ..weak_drive.connection import FORCE, MOTOR
 from ..weak_drive.master import CUBIC, Links, Pair, Scheme
-from ..weak_drive.run import oscillator_start
+from ..weak_drive.run import oscillator_start_values
 from ..weak_drive.step_record import BOX, LEADING, OscillatorOutputs
 from .branches import branch_json
 from .bundle import bundle
@@ -181,7 +181,9 @@ def drive_data(step: float = 0.1) -> dict[str, Any]:
         "oscillator": {"inputs": CUBIC, "outputs": OscillatorOutputs._fields},
         "drive": {"inputs": inputs, "outputs": (*BOX, *MOTOR.outputs)},
     }
-    force, motion = (Links.of([(i, MOTOR.links[n]) for i, n in enumerate(o)]) for o in (FORCE, BOX))
+    force, motion = (
+        Links.from_numbered([(i, MOTOR.links[n]) for i, n in enumerate(o)]) for o in (FORCE, BOX)
+    )
     pair = Pair(force=force, motion=motion, cubic=MOTOR.cubic, stride=len(MOTOR.inputs))
     for name in ("tolerance", "easy", "halvings", "first_passes"):
         setattr(pair, name, getattr(scheme, name))
@@ -192,7 +194,9 @@ def drive_data(step: float = 0.1) -> dict[str, Any]:
         "pair": numbers_in(pair),
         "names": names,
         "columns": (*LEADING, *MOTOR.outputs, *MOTOR.inputs),
-        "oscillator": {name: float(value) for name, value in oscillator_start(structure).items()},
+        "oscillator": {
+            name: float(value) for name, value in oscillator_start_values(structure).items()
+        },
         "drive": {name: float(value) for name, value in drive.parameters().items()},
         "h": scheme.h,
         "omega": structure.omega,

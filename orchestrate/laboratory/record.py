@@ -96,10 +96,10 @@ def record(
     if isinstance(sensors, Mapping):
         words = "; ".join(f"{name}: {text}" for name, text in sensors.items())
     attributes = {"title": title, "source": source, "sensors": words}
-    return checked_record(time, given, sample_rate, attributes)
+    return checked_recorded_names(time, given, sample_rate, attributes)
 
 
-def checked_record(
+def checked_recorded_names(
     time: ArrayLike | None,
     channels: Mapping[str, ArrayLike],
     sample_rate: float | None,

@@ -20,7 +20,7 @@ from ..running.netcdf import check_unpacked_size, unpacked_size
 from .analysis.channels import NAMES_IN_RESULTS
 from .columns import Column, Columns, converted_channels
 from .conversion import SMALLEST, ByChannel, number_by_channel
-from .record import CHANNELS, FORCES, Reading, checked_record, unit_of_channel
+from .record import CHANNELS, FORCES, Reading, checked_recorded_names, unit_of_channel
 from .record_csv import read_csv, write_csv
 from .record_labview import read_lvm, read_tdms
 from .record_mat import read_mat, write_mat
@@ -137,7 +137,7 @@ def read_record(
     )
     values = {name: one.values for name, one in read.items()}
     try:
-        made = checked_record(time, values, table.sample_rate, words, reading)
+        made = checked_recorded_names(time, values, table.sample_rate, words, reading)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     for name in read:

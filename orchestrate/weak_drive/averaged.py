@@ -63,20 +63,21 @@ def transfer_functions(
     return 1.0 / (box - pull * ratio), ratio
 
 
-def no_load_speed(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarray:
+def stationary_voltage(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarray:
+    """Return the voltage eta0 that holds the motor at each speed."""
     Omega = np.asarray(Omega, dtype=float)
     H, _ = transfer_functions(structure, drive, Omega)
     torque = drive.epsilon * Omega**4 * H.imag / (2.0 * drive.b(structure))
     return np.asarray(Omega - torque)
 
 
-def amplitude(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarray:
+def relative_amplitude(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarray:
     """Return the masses' amplitude relative to the box at each speed, in units of S/M_t."""
     H, ratio = transfer_functions(structure, drive, Omega)
     return np.asarray(np.abs(np.asarray(Omega) ** 2 * H * ratio))
 
 
-def resonance(structure: Structure, drive: Drive) -> float:
+def bonded_resonance(structure: Structure, drive: Drive) -> float:
     """Return the speed over omega at which the bonded masses resonate in the box."""
     return float(np.abs(free_vibration_roots(structure, drive)).max())
 
@@ -92,14 +93,14 @@ def free_vibration_roots(structure: Structure, drive: Drive) -> np.ndarray:
     return np.asarray((box * (pull + masses) + pull * masses).roots())
 
 
-def speed_above_box_resonance(structure: Structure, drive: Drive) -> float:
+def speed_between_resonances(structure: Structure, drive: Drive) -> float:
     """Return the speed over omega that divides the box's own resonance from the structure's."""
     # least torque between both: folds below are of the box's own resonance, folds above are not
     frequencies = np.abs(free_vibration_roots(structure, drive))
     high = float(frequencies.max())
     # a slower resonance of the box is far away
     speeds = np.linspace(max(float(frequencies.min()), 0.1 * high), high, 2001)
-    return float(speeds[np.argmin(no_load_speed(structure, drive, speeds) - speeds)])
+    return float(speeds[np.argmin(stationary_voltage(structure, drive, speeds) - speeds)])
 
 
 def folds(
@@ -109,17 +110,19 @@ def folds(
     numerator, denominator = slope_polynomials(structure, drive)
     roots = numerator.roots()
     real = np.sort(roots.real[np.abs(roots.imag) < 1e-6 * np.abs(roots)])
-    low = speed_above_box_resonance(structure, drive) if low is None else low
+    low = speed_between_resonances(structure, drive) if low is None else low
     speeds = [polish_root(numerator, root) for root in real if low <= root <= high]
-    return [BifurcationPoint(float(no_load_speed(structure, drive, w)), w, FOLD) for w in speeds]
+    return [
+        BifurcationPoint(float(stationary_voltage(structure, drive, w)), w, FOLD) for w in speeds
+    ]
 
 
-def dividing_speed(structure: Structure, drive: Drive) -> float:
+def bonded_dividing_speed(structure: Structure, drive: Drive) -> float:
     """Return the speed over omega that divides motions below and beyond the resonance."""
     # half way between the outer folds, where all motions are unstable; else the resonance's speed
     ends = folds(structure, drive)
     if not ends:
-        return resonance(structure, drive)
+        return bonded_resonance(structure, drive)
     return 0.5 * (ends[0].Omega + ends[-1].Omega)
 
 
@@ -167,7 +170,7 @@ def neimark_sacker_points(
         sums = np.add.outer(roots, roots)[np.triu_indices(len(roots), 1)]
         return float(np.prod(-sums / np.abs(sums).max()).real)
 
-    peak, low = resonance(structure, drive), speed_above_box_resonance(structure, drive)
+    peak, low = bonded_resonance(structure, drive), speed_between_resonances(structure, drive)
     speeds = np.linspace(max(0.8 * peak, low), 1.5 * peak, count)
     signs = np.sign([hurwitz_product(Omega) for Omega in speeds])
     points = []
@@ -176,7 +179,7 @@ def neimark_sacker_points(
         roots = growth_rates(structure, drive, Omega)
         pairs = roots[np.abs(roots.imag) > 1e-9]
         if np.abs(pairs.real).min() < 1e-6:  # no two real ones of opposite signs
-            voltage = float(no_load_speed(structure, drive, Omega))
+            voltage = float(stationary_voltage(structure, drive, Omega))
             points.append(BifurcationPoint(voltage, Omega, TORUS))
     return points
 
@@ -184,6 +187,7 @@ def neimark_sacker_points(
 def stability_limits(
     structure: Structure, drive: Drive
 ) -> tuple[BifurcationPoint | None, BifurcationPoint | None]:
+    """Return where stable motions end below the resonance and begin beyond it, if anywhere."""
     points, stable = bifurcations_and_stable_parts(structure, drive)
     if not points:
         return None, None
@@ -198,7 +202,7 @@ def bifurcations_and_stable_parts(
     structure: Structure, drive: Drive
 ) -> tuple[list[BifurcationPoint], list[bool]]:
     """Return all folds and Neimark-Sacker points by speed, and whether parts between are stable."""
-    speed = resonance(structure, drive)
+    speed = bonded_resonance(structure, drive)
     torus = neimark_sacker_points(structure, drive)
     points = sorted([*folds(structure, drive), *torus], key=lambda point: point.Omega)
     speeds = [point.Omega for point in points]
@@ -209,10 +213,10 @@ def bifurcations_and_stable_parts(
 
 def stationary_curve(structure: Structure, drive: Drive) -> xr.Dataset:
     Omega = np.linspace(0.3, 3.0, 20001)
-    volts = no_load_speed(structure, drive, Omega) * drive.volts(structure)
+    volts = stationary_voltage(structure, drive, Omega) * drive.volts(structure)
     points, stable = bifurcations_and_stable_parts(structure, drive)
     part = np.searchsorted([point.Omega for point in points], Omega)
-    amplitudes = amplitude(structure, drive, Omega) * drive.length
+    amplitudes = relative_amplitude(structure, drive, Omega) * drive.length
     curves = {
         "voltage": ("speed", volts, {"units": "V"}),
         "amplitude": ("speed", amplitudes, {"units": "m"}),

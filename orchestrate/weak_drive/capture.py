@@ -31,11 +31,18 @@ from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import compute_dataset
 from . import averaged
-from .capture_rule import DECISIONS, NO_LOAD, UNDECIDED, CaptureOutcome, settling_test, usual_limit
+from .capture_rule import (
+    DECISIONS,
+    NO_LOAD,
+    UNDECIDED,
+    CaptureOutcome,
+    default_time_limit,
+    make_settling_test,
+)
 from .controllers import Controller
-from .couple import couple_job, require_motor, scheme_from_arguments
+from .couple import make_couple_job, require_motor, scheme_from_arguments
 from .master import Scheme
-from .run import MotorJob, MotorRun, motor_runs
+from .run import MotorJob, MotorRun, motor_run_starter
 from .schedule import Constant
 
 DRIVE_NAMES = tuple(field.name for field in fields(Drive))
@@ -73,31 +80,33 @@ class CaptureJob(Job):
 
     def work(self, fmus: Fmus, items: Sequence[System], previous: Any) -> Table:
         rows, borders = [], []
-        with motor_runs(fmus) as begin:
+        with motor_run_starter(fmus) as start_run:
             for system in items:
-                start = partial(self.run_from_rest, begin, system)
+                start = partial(self.run_from_rest, start_run, system)
                 outcomes = [start(voltage) for voltage in self.voltages]
                 rows.append(outcomes)
-                low, high = threshold_voltage(self.voltages, outcomes, start, self.tolerance)
+                low, high = bracket_threshold_voltage(
+                    self.voltages, outcomes, start, self.tolerance
+                )
                 borders.append([*low, *high])
         return {"outcomes": np.array(rows, dtype=float), "borders": np.array(borders)}
 
     def run_from_rest(
-        self, begin: Callable[[MotorJob], MotorRun], system: System, voltage: float
+        self, start_run: Callable[[MotorJob], MotorRun], system: System, voltage: float
     ) -> CaptureOutcome:
-        test = settling_test(*system, self.stay, self.distance(system))
+        test = make_settling_test(*system, self.stay, self.nondimensional_tolerance(system))
         if voltage <= system.drive.motor_constant * test.threshold:
             return CaptureOutcome(NO_LOAD)
         schedule = Constant(voltage, self.time_limit(system))
-        job = couple_job(*system, schedule, self.scheme, 0.0, self.control)
-        with closing(begin(job)) as run:
-            return run_until_settled(run, range(job.steps()), test.judge_record)
+        job = make_couple_job(*system, schedule, self.scheme, 0.0, self.control)
+        with closing(start_run(job)) as run:
+            return run_until_settled(run, range(job.step_count()), test.judge_record)
 
     def time_limit(self, system: System) -> float:
         """Return the longest simulated time of a start, s; after it it is undecided."""
-        return self.time or usual_limit(*system, self.distance(system))
+        return self.time or default_time_limit(*system, self.nondimensional_tolerance(system))
 
-    def distance(self, system: System) -> float:
+    def nondimensional_tolerance(self, system: System) -> float:
         """Return the tolerance of the border over K omega."""
         return self.tolerance / system.drive.volts(system.structure)
 
@@ -110,7 +119,7 @@ class CaptureJob(Job):
         text = "time from which the speed stays beyond the resonance; NaN where it does not"
         how = "how the outcome was decided"
         edge = "voltage from which a motor switched on from rest passes the resonance"
-        folds = np.array([self.highest_fold(system) for system in self.items()])[kept]
+        folds = np.array([self.highest_fold_voltage(system) for system in self.items()])[kept]
         known = "voltage above which no motion below the resonance exists, by the averaged theory"
         volts = np.array([drive.volts(structure) for structure, drive in self.items()])
         # the averaged theory's own error of a fold, with room
@@ -138,7 +147,7 @@ class CaptureJob(Job):
         title = f"Capture at the resonance from rest, {self.structure.kind} structure"
         return xr.Dataset(variables, coordinates, {"title": title})
 
-    def highest_fold(self, system: System) -> float:
+    def highest_fold_voltage(self, system: System) -> float:
         """Return the voltage of the highest fold by averaged theory, V; NaN if unknown."""
         structure, drive = system
         if not structure.bonded or self.control is not None:
@@ -148,42 +157,42 @@ class CaptureJob(Job):
 
 
 def run_until_settled(
-    run: MotorRun, steps: range, outcome: Callable[[np.ndarray, np.ndarray], CaptureOutcome]
+    run: MotorRun, steps: range, decide: Callable[[np.ndarray, np.ndarray], CaptureOutcome]
 ) -> CaptureOutcome:
     times, speeds = np.zeros(0), np.zeros(0)
     first = 0
     while first < len(steps):
         piece = steps[first : first + max(500, first // 5)]
-        rows = run.revolve(piece)
+        rows = run.run_steps_by_revolution(piece)
         times, speeds = np.append(times, rows["time"]), np.append(speeds, rows["speed"])
-        decision = outcome(times, speeds)
-        if decision.decision != UNDECIDED:
-            return decision
+        outcome = decide(times, speeds)
+        if outcome.decision != UNDECIDED:
+            return outcome
         first += len(piece)
     return CaptureOutcome(UNDECIDED)
 
 
-class ThresholdEnd(NamedTuple):
+class BracketEnd(NamedTuple):
     """Store one end of the bracket of the threshold: its voltage, V, and final speed, rad/s."""
 
     voltage: float = math.nan
     speed: float = math.nan
 
 
-def threshold_voltage(
+def bracket_threshold_voltage(
     voltages: Sequence[float],
     outcomes: Sequence[CaptureOutcome],
     start: Callable[[float], CaptureOutcome],
     tolerance: float,
-) -> tuple[ThresholdEnd, ThresholdEnd]:
+) -> tuple[BracketEnd, BracketEnd]:
     """Bracket by bisection the voltage from which a start passes the resonance."""
     # an undecided start is neither captured nor passes: the bracket is wider then
-    captured = [i for i, outcome in enumerate(outcomes) if outcome.captured]
+    captured = [i for i, outcome in enumerate(outcomes) if outcome.is_captured]
     if not captured or not outcomes[-1].passed:
-        return ThresholdEnd(), ThresholdEnd()
+        return BracketEnd(), BracketEnd()
     last = captured[-1]
     first = 1 + max(i for i, outcome in enumerate(outcomes) if not outcome.passed)
-    low, high = (ThresholdEnd(voltages[i], outcomes[i].speed) for i in (last, first))
+    low, high = (BracketEnd(voltages[i], outcomes[i].speed) for i in (last, first))
     doubtful = (voltages[last + 1], voltages[first - 1]) if first - last > 1 else None
     while True:
         begin, end = doubtful or (high.voltage, low.voltage)
@@ -194,11 +203,11 @@ def threshold_voltage(
         else:
             return low, high
         outcome = start(middle)
-        if outcome.captured:
-            low = ThresholdEnd(middle, outcome.speed)
+        if outcome.is_captured:
+            low = BracketEnd(middle, outcome.speed)
             doubtful = None if middle > begin else doubtful
         elif outcome.passed and middle > end:
-            high = ThresholdEnd(middle, outcome.speed)
+            high = BracketEnd(middle, outcome.speed)
         else:  # undecided, or passes below an undecided one
             doubtful = (min(middle, begin), max(middle, end)) if doubtful else (middle, middle)
 
@@ -209,7 +218,7 @@ def replace_parameter(system: System, over: str, value: float) -> System:
     return system._replace(structure=system.structure.replace(**{over: value}))
 
 
-def check_parameter_values(
+def checked_parameter_values(
     over: str | None, values: ArrayLike | None, system: System
 ) -> tuple[float, ...]:
     if (over is None) != (values is None):
@@ -311,7 +320,7 @@ def capture(
     """
     require_motor(structure, drive)
     system = System(structure, drive)
-    parameter_values = check_parameter_values(over, values, system)
+    parameter_values = checked_parameter_values(over, values, system)
     low, high = checked_pair("voltage", voltage, "(lowest, highest) in V")
     checked_range("voltage", low, "V", low=0.0)
     checked_range("voltage", high, "V", low=0.0)
@@ -327,5 +336,5 @@ def capture(
     how = (float(tolerance), float(time or 0.0), stay, scheme, control)
     job = CaptureJob("capture", *what, *how)
     for each in job.items():  # refused now, not amid the work
-        couple_job(*each, Constant(voltages[-1], job.time_limit(each)), scheme, 0.0, control)
+        make_couple_job(*each, Constant(voltages[-1], job.time_limit(each)), scheme, 0.0, control)
     return compute_dataset(job, running, finder(running))

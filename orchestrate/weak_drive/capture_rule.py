@@ -47,7 +47,7 @@ class CaptureOutcome(NamedTuple):
     speed: float = math.nan
 
     @property
-    def captured(self) -> bool:
+    def is_captured(self) -> bool:
         """Return whether the speed has settled below the resonance."""
         return self.decision not in (UNDECIDED, NEITHER) and not self.passed
 
@@ -71,7 +71,7 @@ class SettlingTest:
         if abs(mean - threshold) <= self.rule.tolerance + self.errors * error:
             return CaptureOutcome(NEITHER, speed=mean * self.omega)
         means = np.convolve(speeds, np.full(block, 1.0 / block), "valid")
-        since = last_crossing(means > threshold)
+        since = index_of_last_change(means > threshold)
         passed = bool(mean > threshold)
         if len(means) - since < self.stay or passed != (means[-1] > threshold):
             return CaptureOutcome(UNDECIDED)
@@ -79,20 +79,22 @@ class SettlingTest:
         if not passed:
             return CaptureOutcome(decision, speed=mean * self.omega)
         near = speeds[since : since + block] > threshold
-        crossed = float(time[since + last_crossing(near)])
+        crossed = float(time[since + index_of_last_change(near)])
         return CaptureOutcome(decision, True, crossed, mean * self.omega)
 
 
-def last_crossing(beyond: np.ndarray) -> int:
+def index_of_last_change(beyond: np.ndarray) -> int:
     """Return the index from which a Boolean array keeps its last value."""
     changes = np.flatnonzero(beyond[1:] != beyond[:-1])
     return int(changes[-1]) + 1 if changes.size else 0
 
 
-def settling_test(structure: Structure, drive: Drive, stay: int, distance: float) -> SettlingTest:
+def make_settling_test(
+    structure: Structure, drive: Drive, stay: int, border_tolerance: float
+) -> SettlingTest:
     omega = structure.omega
     threshold = own_resonance.dividing_speed(structure, drive) * omega
-    tolerance = min(max(FINENESS * distance, MIN_TOLERANCE), MAX_TOLERANCE)
+    tolerance = min(max(FINENESS * border_tolerance, MIN_TOLERANCE), MAX_TOLERANCE)
     return SettlingTest(threshold, omega, stay, SettledSettings(tolerance=tolerance))
 
 
@@ -102,25 +104,25 @@ def longest_time_constant(structure: Structure, drive: Drive) -> float:
     return max(min(1.0 / rate, 1000.0) if rate else 1000.0 for rate in rates) / structure.omega
 
 
-def time_past_the_fold(structure: Structure, drive: Drive, distance: float) -> float:
-    """Estimate how long the speed creeps past the upper fold, s."""
-    # x' = r (distance + q x^2 / 2) takes pi/(r sqrt(q distance/2))
+def time_past_the_fold(structure: Structure, drive: Drive, excess: float) -> float:
+    """Estimate how long the speed creeps past the upper fold, s, at an excess over its eta0."""
+    # x' = r (excess + q x^2 / 2) takes pi/(r sqrt(q excess/2))
     folds = averaged.folds(structure, drive)
     if not folds:
         return 0.0
     top, small = folds[0], 1e-3
     speeds = top.Omega + small * np.array([-1.5, -1.0, -0.5])
-    voltages = averaged.no_load_speed(structure, drive, speeds)
+    voltages = averaged.stationary_voltage(structure, drive, speeds)
     slope = float(voltages[2] - voltages[0]) / small
     bend = 2.0 * (top.eta0 - float(voltages[1])) / small**2
     growth = float(averaged.growth_rates(structure, drive, float(speeds[1]))[0].real)
     rate = -growth / slope
     if not (rate > 0.0 and bend > 0.0):  # the motion is lost before its fold
         return 0.0
-    return math.pi / (rate * math.sqrt(0.5 * bend * distance)) / structure.omega
+    return math.pi / (rate * math.sqrt(0.5 * bend * excess)) / structure.omega
 
 
-def usual_limit(structure: Structure, drive: Drive, distance: float) -> float:
+def default_time_limit(structure: Structure, drive: Drive, border_tolerance: float) -> float:
     """Return the default time after which an unsettled start is undecided, s."""
-    creeping = time_past_the_fold(structure.as_bonded(), drive, distance)
+    creeping = time_past_the_fold(structure.as_bonded(), drive, border_tolerance)
     return 600.0 * longest_time_constant(structure, drive) + 10.0 * creeping

@@ -54,7 +54,7 @@ class Connection:
     cubic: int = -1  # place among its inputs from which on they are cubics; -1: all are held
 
     @property
-    def pushes(self) -> tuple[str, ...]:
+    def connected_pushes(self) -> tuple[str, ...]:
         """Return on which halves a force of the drive acts."""
         return tuple(name for name in PUSHES if name in self.links)
 
@@ -77,7 +77,9 @@ def checked_links(
         raise InputError(f"connect = {connect!r}: expected names of theirs by names of ours")
     for name in connect:
         if name not in UNITS:
-            raise InputError(f"connect: {name} is no name of ours{near(name, UNITS)}; {EXPECTED}")
+            raise InputError(
+                f"connect: {name} is no name of ours{suggest_similar(name, UNITS)}; {EXPECTED}"
+            )
     if alone and set(connect) & set(FORCE):
         raise InputError("connect: box_force has no structure that exerts it; leave it out")
     pushes, moves = set(connect) & set(PUSHES), set(connect) & set(MOTION)
@@ -86,7 +88,9 @@ def checked_links(
     whole = moves and (alone or "box_force" in connect)
     if not whole and (not pushes or moves or set(connect) & set(FORCE)):
         missing = "box_force" if moves else "a motion of the box"
-        likely = ", ".join(f"{ours}={theirs}" for ours, theirs in proposals(drive).items())
+        likely = ", ".join(
+            f"{ours}={theirs}" for ours, theirs in propose_connections(drive).items()
+        )
         hint = f"; by unit and name likely: {likely}" if likely else ""
         raise InputError(f"connect: {missing} is missing; {EXPECTED}{hint}")
     links: dict[str, Link] = {}
@@ -115,8 +119,8 @@ def checked_units(units: Mapping[str, str], drive: Description) -> dict[str, str
 def checked_variable(drive: Description, name: str, causality: str, any_type: bool = False) -> Any:
     if name not in drive.variables:
         raise InputError(
-            f"the FMU {drive.name} has no variable {name!r}{near(name, drive.variables)}; "
-            f"expected {of_causality(drive, causality)}"
+            f"the FMU {drive.name} has no variable {name!r}{suggest_similar(name, drive.variables)}"
+            f"; expected {format_candidates(drive, causality)}"
         )
     variable = drive.variable(name)
     numbers = (*REAL_TYPES, *INTEGER_TYPES, "Boolean")
@@ -130,12 +134,12 @@ def checked_variable(drive: Description, name: str, causality: str, any_type: bo
     if causality and variable.causality != causality:
         raise InputError(
             f"{name} of the FMU {drive.name} is of causality {variable.causality}; "
-            f"expected {of_causality(drive, causality)}"
+            f"expected {format_candidates(drive, causality)}"
         )
     return variable
 
 
-def of_causality(drive: Description, causality: str) -> str:
+def format_candidates(drive: Description, causality: str) -> str:
     names = [name for name, one in drive.variables.items() if causality in ("", one.causality)]
     listed = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
     return f"one of its {f'{causality}s' if causality else 'variables'}: {listed or 'it has none'}"
@@ -160,11 +164,11 @@ def factor_to_si(drive: Description, ours: str, theirs: str, units: Mapping[str,
     return unit.factor
 
 
-def near(name: str, known: Iterable[str]) -> str:
+def suggest_similar(name: str, known: Iterable[str]) -> str:
     return did_you_mean(*difflib.get_close_matches(name, list(known), 3))
 
 
-def proposals(drive: Description) -> dict[str, str]:
+def propose_connections(drive: Description) -> dict[str, str]:
     """Return by our names the drive's variables that are likely meant, by unit and name.
 
     - An input (force) or output (motion) whose unit is of the same dimension is likely, whose name
@@ -180,7 +184,7 @@ def proposals(drive: Description) -> dict[str, str]:
         for name, variable in drive.variables.items():
             unit = drive.units.get(variable.unit or "")
             theirs = unit.exponents if unit is not None else None
-            rank = similarity(ours.partition("_")[2], name)
+            rank = name_similarity(ours.partition("_")[2], name)
             fits = theirs == powers or (theirs is None and rank == 1.0)
             fits = fits and variable.type in REAL_TYPES and name not in found.values()
             if fits and variable.causality == ("input" if ours in FORCE else "output"):
@@ -190,16 +194,19 @@ def proposals(drive: Description) -> dict[str, str]:
     return found if FORCE[0] in found and set(MOTION) & set(found) else {}
 
 
-def reason_for(drive: Description, ours: str, theirs: str) -> str:
+def explain_proposal(drive: Description, ours: str, theirs: str) -> str:
     variable = drive.variable(theirs)
     if ours == theirs:
         return "has the same name"
-    unit, alike = variable.unit in drive.units, similarity(ours.partition("_")[2], theirs) == 1.0
+    unit, alike = (
+        variable.unit in drive.units,
+        name_similarity(ours.partition("_")[2], theirs) == 1.0,
+    )
     reasons = [f"{variable.causality} in {variable.unit}"] * unit + ["a name like it"] * alike
     return " and ".join(reasons)
 
 
-def similarity(word: str, name: str) -> float:
+def name_similarity(word: str, name: str) -> float:
     """Return how much a name looks like a word: 1 where a part of it abbreviates the word."""
     parts = [part for part in re.split(r"[^a-z]+", name.lower()) if len(part) > 2]
     if any(word.startswith(part) or part.startswith(word) for part in parts):

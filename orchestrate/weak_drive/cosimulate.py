@@ -39,7 +39,7 @@ from ..running.runner import compute_dataset
 from .connection import FORCE, MOTION, OURS, checked_links, checked_units, checked_variable
 from .controllers import InputControl
 from .cosimulation_job import AT_THE_DURATION, IN_TIME_TOO, CosimulateJob, Values
-from .inputs import Input, check_inputs
+from .inputs import Input, check_input_connections
 from .schedule import Course
 
 # in place of the structure where there is none: the drive does not feel it
@@ -190,12 +190,12 @@ def cosimulate(
         start_values=checked_parameters(parameters, description),
         inputs=checked_inputs(inputs, description, duration),
         step=float(duration) / count,
-        record=checked_record(record, description),
+        record=checked_recorded_names(record, description),
         start=checked_state("start", start, checked),
         force_sign=checked_word("force_sign", force_sign, get_args(ForceSign)),
         points=points,
     )
-    check_inputs(job.inputs, links)
+    check_input_connections(job.inputs, links)
     found = compute_dataset(job, running, finder(running), job.drive_sha256 if foreign else "")
     warn_of_run(found, links, estimate)
     return found
@@ -263,7 +263,7 @@ def checked_inputs(
     return tuple(courses)
 
 
-def checked_record(record: Any, drive: Description) -> tuple[str, ...]:
+def checked_recorded_names(record: Any, drive: Description) -> tuple[str, ...]:
     record = checked_texts("record", record)
     for name in record:
         checked_variable(drive, name, "", any_type=True)
@@ -273,16 +273,16 @@ def checked_record(record: Any, drive: Description) -> tuple[str, ...]:
 
 
 def warn_of_run(run: xr.Dataset, links: Container[str], estimate: bool) -> None:
-    warn_of_drive(run)
+    repeat_drive_warnings(run)
     missing = [name for name in MOTION if name not in links]
     missing = missing if len(missing) < len(MOTION) else []
     if missing:
-        warn_of_step(run, missing)
+        warn_of_long_step(run, missing)
     if estimate:
-        warn_of_error(run, missing)
+        warn_of_coupling_error(run, missing)
 
 
-def warn_of_drive(run: xr.Dataset) -> None:
+def repeat_drive_warnings(run: xr.Dataset) -> None:
     """Warn with what the drive warned of, each text once, and where it ended the simulation."""
     attributes = getattr(run, "attrs", {})
     for text in attributes.get("drive_warnings", "").splitlines():
@@ -291,7 +291,7 @@ def warn_of_drive(run: xr.Dataset) -> None:
         warnings.warn(f"{ended}; the result ends there", stacklevel=4)
 
 
-def warn_of_step(run: xr.Dataset, missing: Sequence[str]) -> None:
+def warn_of_long_step(run: xr.Dataset, missing: Sequence[str]) -> None:
     """Warn where the drive is not seen to follow a force as a mass does within a step."""
     share = getattr(run, "attrs", {}).get("response_in_a_step", math.nan)
     if share < RESOLVED:
@@ -300,7 +300,7 @@ def warn_of_step(run: xr.Dataset, missing: Sequence[str]) -> None:
         warnings.warn(f"{text}; reduce it or connect {', '.join(missing)}", stacklevel=4)
 
 
-def warn_of_error(run: xr.Dataset, missing: Sequence[str]) -> None:
+def warn_of_coupling_error(run: xr.Dataset, missing: Sequence[str]) -> None:
     """Warn where the coupling's error may hide or make impacts; ``missing`` could be connected."""
     if "coupling_error" not in getattr(run, "data_vars", ()):  # a job alone
         return

@@ -36,7 +36,7 @@ from .inputs import Input, Inputs
 from .master import DriveSide, Master, Scheme
 from .polynomials import end_derivatives
 from .run import CoupledJob, Run
-from .step_record import Floats, Record, joined
+from .step_record import Floats, Record, join_records
 
 OUTPUTS = (*PLAYED, "box_force", "impact_energy")
 IN_TIME_TOO = {
@@ -47,7 +47,7 @@ IN_TIME_TOO = {
     "box_work": ("J", "work of that force on the drive since the start"),
     "coupling_error": ("m", "estimated error of x1 and x2 by the coupling, the larger one"),
 }
-BEGINNING = (1, 1, 2, 4, 8, 16, 32)  # parts of the first step where no acceleration is known
+FIRST_STEP_PARTS = (1, 1, 2, 4, 8, 16, 32)  # parts of the first step where no acceleration is known
 IN_STEPS = ("nodes", "cubics", "work")  # arrays with a row for each step
 AT_THE_DURATION = "at the duration"  # attribute `ended` of a run that the drive did not end
 NOTHING = np.empty((0, 0))
@@ -57,7 +57,7 @@ TO_HALF = 8.0 / 7.0  # error over its difference to half the step, which errors 
 Values = tuple[tuple[str, float | bool], ...]
 
 
-class Coupling(Run):
+class CosimulationRun(Run):
     """Both FMUs of a job, stepped together at its step or a part of it."""
 
     def __init__(
@@ -72,7 +72,7 @@ class Coupling(Run):
         still = Excitation(frequency=job.structure.omega, amplitude=0.0)
         begin(oscillator, job.structure, still, job.start)
         inputs = Inputs(job.inputs, drive.description)
-        connection = replace(job.begin_drive(drive, inputs), recorded=job.record)
+        connection = replace(job.initialize_and_connect(drive, inputs), recorded=job.record)
         fixed = drive.description.has_fixed_step or drive.description.internal_step
         goes_back = drive.description.has_states and not fixed
         scheme = Scheme(job.step / parts, halves_discarded=goes_back)
@@ -80,31 +80,33 @@ class Coupling(Run):
         self.divides_first = "box_acceleration" not in connection.links and not fixed
         super().__init__(master, inputs)
 
-    def step_table(self, items: range) -> Table:
+    def run_items(self, items: range) -> Table:
         """Do the steps of some items; return nodes, cubics, work, and what is recorded."""
         steps = range(items.start * self.parts, items.stop * self.parts)
         recorded = []
         if self.master.connection.recorded and not steps.start:
             start = [*self.inputs.start_values().values()]
-            recorded = [np.array([self.master.recorded(start)])]
+            recorded = [np.array([self.master.read_recorded(start)])]
         try:
-            record = self.record(steps)
+            record = self.run_steps(steps)
         except FmuError:
-            self.check_forces([self.master.time], [self.master.motion.box_force])
+            self.require_bounded_forces([self.master.time], [self.master.motion.box_force])
             raise
-        self.check_forces(record["time"], record["box_force"])
+        self.require_bounded_forces(record["time"], record["box_force"])
         nodes = record["time"].copy()
-        nodes[record.ends] = self.job.times(self.parts)[steps.start + 1 :][: len(record.ends)]
-        table = {"nodes": nodes[1:], "cubics": np.transpose(record.after.cubics())}
-        table |= {"work": record.after["given"], "ended": np.array([self.master.ended])}
+        nodes[record.ends] = self.job.communication_times(self.parts)[steps.start + 1 :][
+            : len(record.ends)
+        ]
+        table = {"nodes": nodes[1:], "cubics": np.transpose(record.after.input_cubics())}
+        table |= {"work": record.after["given"], "ended": np.array([self.master.end_reason])}
         if self.master.connection.recorded:
             rows = record.recorded[self.parts - 1 :: self.parts]
             table["recorded"] = np.concatenate([*recorded, rows])
         return table
 
-    def check_forces(self, times: ArrayLike, forces: ArrayLike) -> None:
+    def require_bounded_forces(self, times: ArrayLike, forces: ArrayLike) -> None:
         limit = DIVERGED * (self.job.structure.k1 + self.job.structure.k2)
-        rows = np.column_stack([times, forces])[: 0 if self.job.alone else None]
+        rows = np.column_stack([times, forces])[: 0 if self.job.is_drive_alone else None]
         for time, force in rows[np.abs(rows[:, 1]) > limit][:1]:
             links = self.master.connection.links
             motion = " and ".join(links[name].theirs for name in MOTION if name in links)
@@ -112,21 +114,25 @@ class Coupling(Run):
             if "box_force" not in links:
                 raise FmuError(text) from None
             text += f": look at the unit of {motion} and the sign of box_force"
-            raise FmuError(f"{text}, connect {turned(links)}; or reduce the step") from None
+            raise FmuError(
+                f"{text}, connect {format_reversed_force(links)}; or reduce the step"
+            ) from None
 
-    def record(self, steps: range) -> Record:
+    def run_steps(self, steps: range) -> Record:
         """Run both FMUs over some steps, the first one in parts where no acceleration is known."""
         h, divides = self.master.scheme.h, self.divides_first
         if steps.start or not divides:
-            return self.inputs.run(self.master, steps, h, int(divides))
-        parts = np.array(BEGINNING) / sum(BEGINNING) * h
-        rows = self.inputs.over_steps(np.append(0.0, np.cumsum(parts)), self.master.width)
+            return self.inputs.run_master(self.master, steps, h, int(divides))
+        parts = np.array(FIRST_STEP_PARTS) / sum(FIRST_STEP_PARTS) * h
+        rows = self.inputs.rows_over_steps(
+            np.append(0.0, np.cumsum(parts)), self.master.input_width
+        )
         runs = (self.master.run(rows[i : i + 1], h) for i, h in enumerate(parts.tolist()))
-        pieces = joined([*runs])
-        if self.master.ended:
-            raise FmuError(self.master.ended)
+        pieces = join_records([*runs])
+        if self.master.end_reason:
+            raise FmuError(self.master.end_reason)
         begun = replace(pieces, ends=pieces.ends[-1:], recorded=pieces.recorded[-1:])
-        return joined([begun, self.inputs.run(self.master, steps[1:], h, 1)])
+        return join_records([begun, self.inputs.run_master(self.master, steps[1:], h, 1)])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,12 +156,12 @@ class CosimulateJob(CoupledJob, Question):
     family: ClassVar[tuple[str, ...]] = ("stroke",)  # at a wall the box's velocity jumps
 
     @property
-    def alone(self) -> bool:
+    def is_drive_alone(self) -> bool:
         return not {"box_force", *PUSHES} & set(dict(self.connect))
 
     def parameters(self) -> dict[str, Any]:
         known = super().parameters()
-        return {**known, "structure": None} if self.alone else known
+        return {**known, "structure": None} if self.is_drive_alone else known
 
     def format_call(self) -> str:
         values: dict[str, Any] = {"connect": dict(self.connect), "units": dict(self.units)}
@@ -163,21 +169,23 @@ class CosimulateJob(CoupledJob, Question):
         values |= {name: getattr(self, name) for name in ("duration", "step", "record", "start")}
         texts = (f"{name}={value!r}" for name, value in values.items() if value)
         structure = (
-            "None" if self.alone else f"Structure{format_brief(to_json_data(self.structure))}"
+            "None"
+            if self.is_drive_alone
+            else f"Structure{format_brief(to_json_data(self.structure))}"
         )
         return f"{self.asked}({structure}, {self.drive!r}, {', '.join(texts)})"
 
-    def steps(self) -> int:
+    def step_count(self) -> int:
         return round(self.duration / self.step)
 
-    def times(self, parts: int = 1) -> Floats:
-        return np.linspace(0.0, self.duration, parts * self.steps() + 1)
+    def communication_times(self, parts: int = 1) -> Floats:
+        return np.linspace(0.0, self.duration, parts * self.step_count() + 1)
 
     def chunks(self) -> list[Chunk]:
         """Split the steps into chunks if the drive can give its state, to go on from."""
         if describe(self.drive).saves_states:
             return super().chunks()
-        last = self.steps()
+        last = self.step_count()
         return [Chunk(0, 0, last, None), Chunk(1, last, last + 1, 0)]
 
     def progress_note(self, first: int) -> str:
@@ -186,85 +194,90 @@ class CosimulateJob(CoupledJob, Question):
         return "run (not resumable)"
 
     def advance(self, fmus: Fmus, steps: range, previous: Table | None) -> Table:
-        response = self.response_to_force() if previous is None else previous["response"][-1]
+        response = (
+            self.measure_response_to_force() if previous is None else previous["response"][-1]
+        )
         table: Table = {"response": response[np.newaxis]}
         warned: dict[str, None] = {}
-        for parts in self.finenesses():
-            before = previous and rows_of(previous, parts)
+        for parts in self.step_divisions():
+            before = previous and columns_of_division(previous, parts)
             if before and before["ended"][-1]:
                 found = {name: values[:0] for name, values in before.items()}  # nothing more
                 found["ended"] = before["ended"]
             else:
                 with Instance(fmus[OSCILLATOR]) as one, Instance(self.drive, "drive") as drive:
-                    coupling = Coupling(self, one, drive, parts, float(response[0]))
+                    coupling = CosimulationRun(self, one, drive, parts, float(response[0]))
                     if before:
                         coupling.set_state(before)
-                    found = {**coupling.step_table(steps), **coupling.get_state()}
+                    found = {**coupling.run_items(steps), **coupling.get_state()}
                     coupling.close()
                     warned |= drive.warnings
             table |= {f"{name} {parts}": values for name, values in found.items()}
         table["warned"] = np.array(["\n".join(warned)])
         return table
 
-    def begin_drive(self, drive: Instance, inputs: Inputs) -> Connection:
+    def initialize_and_connect(self, drive: Instance, inputs: Inputs) -> Connection:
         drive.initialize(**dict(self.start_values), **inputs.start_values())
-        links = self.links(drive.description)
+        links = self.links_to(drive.description)
         return Connection(links, tuple(inputs.names), cubic=inputs.cubic)
 
-    def links(self, drive: Description) -> dict[str, Link]:
-        return checked_links(dict(self.connect), drive, dict(self.units), self.alone)
+    def links_to(self, drive: Description) -> dict[str, Link]:
+        return checked_links(dict(self.connect), drive, dict(self.units), self.is_drive_alone)
 
-    def response_to_force(self) -> Floats:
+    def measure_response_to_force(self) -> Floats:
         """Return the box's acceleration by 1 N at once, m/s2, and which part of it in a step."""
         seen: list[Any] = []
         if "box_force" not in dict(self.connect):
             return np.array([0.0, math.nan])
         for force in (0.0, 1.0):
             with suppress(FmuError), Instance(self.drive, "drive") as drive:
-                connection = self.begin_drive(drive, Inputs(self.inputs, drive.description))
+                connection = self.initialize_and_connect(
+                    drive, Inputs(self.inputs, drive.description)
+                )
                 side = DriveSide(drive, replace(connection, inputs=()))  # they stay as they began
-                side.put((force, 0.0, 0.0, 0.0), ())
-                motion, about = [side.get()[:3]], drive.description
+                side.set_inputs((force, 0.0, 0.0, 0.0), ())
+                motion, about = [side.read_outputs()[:3]], drive.description
                 short = 0.0 if about.has_fixed_step or about.internal_step else SHORT * self.step
                 if short:
                     drive.step(0.0, short)
-                    motion.append(side.get()[:3])
+                    motion.append(side.read_outputs()[:3])
                 drive.step(short, self.step)
-                seen.append([*motion, side.get()[:3]])
+                seen.append([*motion, side.read_outputs()[:3]])
         if len(seen) < 2:  # the run itself says what the drive does
             return np.array([0.0, math.nan])
         begin, *early, late = np.diff(seen, axis=0)[0]
         means = np.array([2.0 / self.step**2, 1.0 / self.step, 1.0]) * late
         soon = np.array([2.0 / short**2, 1.0 / short]) * early[0][:2] if early else means[:2]
         at_once = next((x for x in (begin[2], *soon[::-1]) if math.isfinite(x)), math.nan)
-        self.check_sign([at_once, *means], connection.links)
+        self.check_force_sign([at_once, *means], connection.links)
         mean = next(x for x in means[[1, 0, 2]] if math.isfinite(x))
         return np.array([at_once, mean / at_once if at_once else math.nan])
 
-    def check_sign(self, responses: Sequence[float], links: Mapping[str, Link]) -> None:
+    def check_force_sign(self, responses: Sequence[float], links: Mapping[str, Link]) -> None:
         """Raise ``InputError`` if the first response to the force that is one goes against it."""
         moved = next((x for x in responses if math.isfinite(x) and x), 0.0)
         if moved < 0.0 and self.force_sign == "tested":
             text = f"1 N of box_force accelerates the box by {moved:.2g} m/s2, against the force; "
-            text += f"connect {turned(links)}, or say force_sign='given' if that is meant"
+            text += f"connect {format_reversed_force(links)}, or say "
+            text += "force_sign='given' if that is meant"
             raise InputError(text)
 
-    def inputs_at_start(self, drive: Description) -> Iterator[str]:
+    def inputs_left_at_start(self, drive: Description) -> Iterator[str]:
         """Yield ``name = start unit`` of each of the drive's inputs that nothing is given for."""
-        links = self.links(drive).values()
+        links = self.links_to(drive).values()
         given = {*(link.theirs for link in links), *Inputs(self.inputs, drive).names}
         for name, one in drive.variables.items():
             if one.causality == "input" and name not in given:
                 yield f"{name} = {one.start} {one.unit or ''}".rstrip()
 
-    def finenesses(self) -> tuple[int, ...]:
+    def step_divisions(self) -> tuple[int, ...]:
         """Return into how many parts steps are divided: 1, and 2 in a second run for the error."""
         return (1, 2) if self.estimate else (1,)
 
-    def conclude(self, fmus: Fmus, table: Table) -> Table:
-        runs = {parts: rows_of(table, parts) for parts in self.finenesses()}
-        times, ended = self.reached(runs)
-        times = self.times(self.points)[: self.points * (len(times) - 1) + 1]
+    def compute_from_all_steps(self, fmus: Fmus, table: Table) -> Table:
+        runs = {parts: columns_of_division(table, parts) for parts in self.step_divisions()}
+        times, ended = self.times_reached(runs)
+        times = self.communication_times(self.points)[: self.points * (len(times) - 1) + 1]
         motions, run = [], runs[1]
         with Player(fmus[OSCILLATOR]) as player:
             for one in runs.values():
@@ -295,9 +308,9 @@ class CosimulateJob(CoupledJob, Question):
         columns["response"], columns["ended"] = table["response"][:1], np.array([ended])
         return {**columns, **impact_columns(impacts, self.structure)}
 
-    def reached(self, runs: Mapping[int, Table]) -> tuple[Floats, str]:
+    def times_reached(self, runs: Mapping[int, Table]) -> tuple[Floats, str]:
         ends = [np.max(run["nodes"], initial=0.0) for run in runs.values()]
-        last, times = min(ends), self.times()
+        last, times = min(ends), self.communication_times()
         both = zip(runs.values(), ends, strict=True)
         texts = [text for run, end in both if end == last for text in run["ended"].tolist()]
         ended = next(filter(None, texts), "")
@@ -309,7 +322,7 @@ class CosimulateJob(CoupledJob, Question):
         description = describe(self.drive)
         at_steps = "time" if self.points == 1 else "step_time"
         times = {"time": "time"} | {at_steps: "communication points"}
-        structure = "no structure" if self.alone else self.structure.label()
+        structure = "no structure" if self.is_drive_alone else self.structure.label()
         resumable = "yes" if description.saves_states else "no: the drive cannot save its state"
         return xr.Dataset(
             self.motion_variables(table, at_steps) | self.drive_variables(table, at_steps),
@@ -318,7 +331,7 @@ class CosimulateJob(CoupledJob, Question):
                 "title": f"{structure} on {description.name}",
                 "drive": description.name,
                 "recorded": ",".join(self.record),
-                "inputs_at_start": ", ".join(self.inputs_at_start(description)),
+                "inputs_at_start": ", ".join(self.inputs_left_at_start(description)),
                 "response_in_a_step": float(table["response"][0][1]),
                 "ended": str(table["ended"][-1]) or AT_THE_DURATION,
                 "drive_warnings": "\n".join(dict.fromkeys(filter(None, table["warned"].tolist()))),
@@ -330,7 +343,7 @@ class CosimulateJob(CoupledJob, Question):
         shown = {**IN_TIME, **IN_TIME_TOO}
         work = shown.pop("box_work")
         acceleration = variable("time", table["box_acceleration"], *shown["box_acceleration"])
-        if self.alone:
+        if self.is_drive_alone:
             return {"box_acceleration": acceleration}
         found = {n: variable("time", table[n], *about) for n, about in shown.items() if n in table}
         if "box_velocity" in dict(self.connect):
@@ -355,11 +368,11 @@ class CosimulateJob(CoupledJob, Question):
         return found
 
 
-def rows_of(table: Table, parts: int) -> Table:
+def columns_of_division(table: Table, parts: int) -> Table:
     end = f" {parts}"
     return {name.removesuffix(end): table[name] for name in table if name.endswith(end)}
 
 
-def turned(links: Mapping[str, Link]) -> str:
+def format_reversed_force(links: Mapping[str, Link]) -> str:
     force = links["box_force"]
     return f"box_force={'-' if force.scale > 0.0 else ''}{force.theirs}"

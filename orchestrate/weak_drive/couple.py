@@ -24,9 +24,9 @@ from .controllers import Controller
 from .growth import growth_rate
 from .hysteresis import LOST, UNDECIDED, HysteresisLoop, HysteresisSettings, Jump
 from .master import Scheme
-from .ramp_record import DONE, RampRecord, jump_labels, time_beyond, variables_shown
+from .ramp_record import DONE, RampRecord, jump_labels, ramp_jump_variables, time_stays_above
 from .revolutions import COLUMNS
-from .run import MotorJob, motor_runs
+from .run import MotorJob, motor_run_starter
 from .schedule import Constant, Ramp, Schedule
 
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
@@ -46,22 +46,22 @@ class CoupleJob(MotorJob):
     asked: ClassVar[str] = "couple"
     hysteresis: HysteresisSettings = field(default_factory=HysteresisSettings)
 
-    def run_here(self, fmus: Fmus) -> Table:
+    def run_all_chunks(self, fmus: Fmus) -> Table:
         *chunks, _ = self.chunks()
         tables: list[Table] = []
         for chunk in chunks:
             previous = tables[-1] if tables else None
             tables.append(self.work(fmus, range(chunk.start, chunk.stop), previous))
         table = {name: np.concatenate([part[name] for part in tables]) for name in tables[0]}
-        return {**table, **self.conclude(fmus, table)}
+        return {**table, **self.compute_from_all_steps(fmus, table)}
 
     def progress_note(self, first: int) -> str:
-        return "voltages held at jumps" if first == self.steps() else ""
+        return "voltages held at jumps" if first == self.step_count() else ""
 
-    def conclude(self, fmus: Fmus, table: Table) -> Table:
+    def compute_from_all_steps(self, fmus: Fmus, table: Table) -> Table:
         if self.control is not None:
             return {"verdicts": np.array([], VERDICT)}
-        with motor_runs(fmus) as start:
+        with motor_run_starter(fmus) as start:
             volts = RampRecord(self, table, True).sense * self.drive.volts(self.structure)
             loop = HysteresisLoop(
                 lambda schedule: start(replace(self, schedule=schedule)),
@@ -73,12 +73,12 @@ class CoupleJob(MotorJob):
                 settings=self.hysteresis,
                 growth=growth_rate,
             )
-            loop.add_checkpoints(table, self.chunk_size, self.steps())
-            found = [(up, loop.decide(RampRecord(self, table, up))) for up in (True, False)]
+            loop.add_checkpoints(table, self.chunk_size, self.step_count())
+            found = [(up, loop.decide_jumps(RampRecord(self, table, up))) for up in (True, False)]
         jumps = [(up, tuple(jump)) for up, each in found for jump in each]
         return {"verdicts": np.array(jumps, VERDICT)}
 
-    def jumps(self, table: Table) -> list[list[Jump]]:
+    def jumps_by_direction(self, table: Table) -> list[list[Jump]]:
         """Return the jumps of both directions; the first sure one stands for all."""
         found = table["verdicts"]
         each = (found["jump"][found["up"] == up].tolist() for up in (True, False))
@@ -101,36 +101,36 @@ class CoupleJob(MotorJob):
         coordinates = {name: variable("revolution", *text) for name, text in texts.items()}
         threshold = own_resonance.dividing_speed(self.structure, self.drive)
         text = "time from which the mean speed stays beyond the resonance; NaN where it does not"
-        passed = time_beyond(table["time"], np.abs(Omega), threshold)
+        passed = time_stays_above(table["time"], np.abs(Omega), threshold)
         variables["passage_time"] = variable((), passed, "s", text)
-        labels, jump_columns = self.jump_variables(table)
+        labels, jump_columns = self.jump_labels_and_variables(table)
         names = {"long_name": "direction in which the speed jumps; further jumps are numbered"}
         coordinates["jump"] = ("jump", np.array(labels), names)
         return xr.Dataset({**variables, **jump_columns}, coordinates, self.attributes(table))
 
-    def jump_variables(self, table: Table) -> tuple[list[str], dict[str, Variable]]:
+    def jump_labels_and_variables(self, table: Table) -> tuple[list[str], dict[str, Variable]]:
         records = [RampRecord(self, table, up) for up in (True, False)]
-        each = list(zip(DIRECTIONS, self.jumps(table), records, strict=True))
+        each = list(zip(DIRECTIONS, self.jumps_by_direction(table), records, strict=True))
         first = [(way, jumps[0] if jumps else None, record) for way, jumps, record in each]
         further = [(way, jump, record) for way, jumps, record in each for jump in jumps[1:]]
         directions, every, records_of = zip(*first, *further, strict=True)
         shown = [
-            record.rows_shown(*jump[1:]) if jump else [math.nan] * len(DONE)
+            record.rows_of_jump(*jump[1:]) if jump else [math.nan] * len(DONE)
             for jump, record in zip(every, records_of, strict=True)
         ]
-        columns = variables_shown(records[0].forward(), shown)
+        columns = ramp_jump_variables(records[0].forward_table(), shown)
         columns |= bracket_variables(every, columns, self.drive.volts(self.structure))
         columns |= self.theory_variables(len(every))
         for name in MIRRORED & columns.keys() if records[0].sense < 0.0 else ():
             dims, values, attributes = columns[name]
             columns[name] = (dims, np.negative(values), attributes)
-        how = [self.decision(*pair) for pair in zip(every, records_of, strict=True)]
+        how = [self.explain_decision(*pair) for pair in zip(every, records_of, strict=True)]
         decided, why = (np.array(parts) for parts in zip(*how, strict=True))
         columns["decided"] = ("jump", decided, {"long_name": "how jump or none was decided"})
         columns["no_jump"] = ("jump", why, {"long_name": "why there is no jump"})
         return jump_labels(directions), columns
 
-    def decision(self, jump: Jump | None, record: RampRecord) -> tuple[str, str]:
+    def explain_decision(self, jump: Jump | None, record: RampRecord) -> tuple[str, str]:
         if jump is not None and jump.outcome == UNDECIDED:
             volts = record.sense * self.drive.volts(self.structure)
             low, high = volts * jump.low, volts * jump.high
@@ -225,7 +225,7 @@ def schedule_from_arguments(
     settle = 300.0 / omega if settle is None else checked_number("settle", settle)
     increment = checked_number("increment", increment)
     first, last = ends
-    low = 0.9 * own_resonance.resonances(structure, drive)[0] * volts
+    low = 0.9 * own_resonance.lower_and_higher_resonance(structure, drive)[0] * volts
     sense = math.copysign(1.0, last)
     if spin_up is None:  # a run up begins on the branch below the resonance
         spin_up = 600.0 / omega if sense * last > sense * first > low / 0.9 else 0.0
@@ -250,7 +250,7 @@ def scheme_from_arguments(
     return Scheme(step, tolerance)
 
 
-def couple_job(
+def make_couple_job(
     structure: Structure,
     drive: Drive,
     schedule: Schedule,
@@ -406,5 +406,7 @@ def couple(
     settings = (duration, rate, settle, increment, back, spin_up)
     schedule = schedule_from_arguments(structure, drive, voltage, *settings)
     scheme = scheme_from_arguments(structure, step, tolerance, control is not None)
-    job = couple_job(structure, drive, schedule, scheme, speed_start, control, hold, hysteresis)
+    job = make_couple_job(
+        structure, drive, schedule, scheme, speed_start, control, hold, hysteresis
+    )
     return compute_dataset(job, running, finder(running))

@@ -26,16 +26,16 @@ from . import averaged, couple, own_resonance
 from .couple import KINDS
 
 
-def voltage_range(structure: Structure, drive: Drive) -> tuple[float, float]:
+def default_eta0_range(structure: Structure, drive: Drive) -> tuple[float, float]:
     """Return the two ends of the voltage ramp, over K omega, from below to past resonance."""
-    low, high = own_resonance.resonances(structure, drive)
+    low, high = own_resonance.lower_and_higher_resonance(structure, drive)
     ends = (0.97 * low, 1.05 * high)
-    first, last = (float(averaged.no_load_speed(structure, drive, end)) for end in ends)
+    first, last = (float(averaged.stationary_voltage(structure, drive, end)) for end in ends)
     folds = averaged.folds(structure, drive)
     return first, max([last, *(fold.eta0 + 0.05 for fold in folds)])
 
 
-def couple_job_from_numbers(
+def make_couple_job_from_ratios(
     name: str,
     system: tuple[Structure, Drive],
     kind: str,
@@ -48,11 +48,11 @@ def couple_job_from_numbers(
     couple.require_motor(structure, drive)
     structure = structure.as_bonded() if kind == "bonded" else structure.as_delaminated()
     volts, omega = drive.volts(structure), structure.omega
-    first, last = voltage_range(structure.as_bonded(), drive) if eta0 is None else eta0
+    first, last = default_eta0_range(structure.as_bonded(), drive) if eta0 is None else eta0
     ends, speed = (first * volts, last * volts), rate * volts * omega
     schedule = couple.schedule_from_arguments(structure, drive, ends, rate=speed, back=back)
     scheme = couple.scheme_from_arguments(structure, None if step is None else step / omega)
-    job = couple.couple_job(structure, drive, schedule, scheme)
+    job = couple.make_couple_job(structure, drive, schedule, scheme)
     return replace(job, name=f"couple_{name}_{kind}_{rate:g}")
 
 
@@ -116,7 +116,7 @@ def couple_all(
         checked_range("rate", rate, "of eta0 in a time 1/omega", low=0.0, open_low=True)
     runs = list(product(systems, kinds, dict.fromkeys(rates)))
     more = (eta0, back, step)
-    jobs = [couple_job_from_numbers(n, systems[n], kind, rate, *more) for n, kind, rate in runs]
+    jobs = [make_couple_job_from_ratios(n, systems[n], kind, rate, *more) for n, kind, rate in runs]
     if not jobs:
         raise InputError("kinds, rates: expected one of each, or more")
     datasets = [

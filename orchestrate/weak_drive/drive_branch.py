@@ -40,8 +40,8 @@ from .drive_tracer import (
     NOT_BEGUN,
     DriveTracer,
     Motion,
-    double_period,
-    motion_near,
+    find_doubled_motion,
+    find_motion_near,
 )
 from .shooting import Shooter
 
@@ -96,23 +96,23 @@ class DriveBranchJob(Job):
         }
 
     @property
-    def settings(self) -> ContinuationSettings:
+    def continuation_settings(self) -> ContinuationSettings:
         return ContinuationSettings(self.longest, self.most - 1)
 
-    def max_turns(self, structure: Structure) -> int:
+    def max_period_in_revolutions(self, structure: Structure) -> int:
         """Return the longest period that is traced, in revolutions."""
         return 1 if structure.bonded else self.period
 
     def make_shooter(self, fmus: tuple[Instance, Instance], structure: Structure) -> Shooter:
         low, high = (speed / structure.omega for speed in self.speeds)
-        sizes = averaged.amplitude(structure, self.drive, np.linspace(low, high, 2001))
+        sizes = averaged.relative_amplitude(structure, self.drive, np.linspace(low, high, 2001))
         length = float(sizes.max()) * self.drive.length
-        turns = self.max_turns(structure)
+        turns = self.max_period_in_revolutions(structure)
         return Shooter(fmus, structure, self.drive, turns, self.steps, length)
 
     def trace_legs(self, shooter: Shooter) -> list[Leg]:
         low, high = (speed / shooter.structure.omega for speed in self.speeds)
-        turns = self.max_turns(shooter.structure)
+        turns = self.max_period_in_revolutions(shooter.structure)
         below = self.trace_leg(shooter, (low, high), up=True)
         passed = below.end == LIMIT and below.points[-1].coordinates[1] > 0.5 * (low + high)
         above = Leg(end=NOT_BEGUN) if passed else self.trace_leg(shooter, (low, high), up=False)
@@ -132,30 +132,30 @@ class DriveBranchJob(Job):
 
     def trace_doubled_leg(self, shooter: Shooter, flip: Motion, speeds: tuple[float, float]) -> Leg:
         try:
-            start = double_period(shooter, flip)
-            return DriveTracer(shooter, start, speeds, self.settings).trace(start)
+            start = find_doubled_motion(shooter, flip)
+            return DriveTracer(shooter, start, speeds, self.continuation_settings).trace(start)
         except SOLVER_ERRORS:
             return Leg(end=NO_START)
 
     def trace_leg(self, shooter: Shooter, speeds: tuple[float, float], up: bool) -> Leg:
         """Trace one leg from the lowest or the highest speed, begun by simulation."""
         speed = speeds[0] if up else speeds[1]
-        voltage = float(averaged.no_load_speed(shooter.structure, self.drive, speed))
+        voltage = float(averaged.stationary_voltage(shooter.structure, self.drive, speed))
         omega = shooter.structure.omega
-        state = shooter.settle(voltage * shooter.volts, speed * omega, self.settle)
+        state = shooter.simulate_at_speed(voltage * shooter.volts, speed * omega, self.settle)
         guess = np.append(state, [voltage, speed])
-        turns = self.max_turns(shooter.structure)
+        turns = self.max_period_in_revolutions(shooter.structure)
         try:
-            shooter.repeat_after(turns)
-            start = motion_near(shooter, guess, up)
+            shooter.set_revolutions(turns)
+            start = find_motion_near(shooter, guess, up)
             for part in (part for part in range(1, turns) if turns % part == 0):
-                if np.abs(shooter.change_in(start.root.unknowns, part)).max() < 1e-6:
-                    shooter.repeat_after(part)
-                    start = motion_near(shooter, start.root.unknowns, up)
+                if np.abs(shooter.state_change_after(start.root.unknowns, part)).max() < 1e-6:
+                    shooter.set_revolutions(part)
+                    start = find_motion_near(shooter, start.root.unknowns, up)
                     break
         except SOLVER_ERRORS:
             return Leg(end=NO_START)
-        return DriveTracer(shooter, start, speeds, self.settings).trace(start)
+        return DriveTracer(shooter, start, speeds, self.continuation_settings).trace(start)
 
     def motion_table(self, motions: Sequence[Motion]) -> np.ndarray:
         table = np.full((self.most, len(COLUMNS) + MULTIPLIERS), np.nan, dtype=complex)
@@ -303,7 +303,9 @@ def drive_branch(
     """
     require_motor(structure, drive)
     omega = structure.omega
-    low, high = (speed * omega for speed in own_resonance.resonances(structure, drive))
+    low, high = (
+        speed * omega for speed in own_resonance.lower_and_higher_resonance(structure, drive)
+    )
     expected = "(first, last) in rad/s, with 0 < first < last"
     usual = 0.95 * low, 1.25 * high
     first, last = checked_pair("speed", usual if speed is None else speed, expected)

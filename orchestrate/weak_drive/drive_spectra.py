@@ -29,8 +29,8 @@ from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import compute_dataset
 from . import averaged, own_resonance
-from .couple import KINDS, MAX_STEPS, couple_job, require_motor, scheme_from_arguments
-from .run import MotorRun, begin_run
+from .couple import KINDS, MAX_STEPS, make_couple_job, require_motor, scheme_from_arguments
+from .run import MotorRun, open_motor_run
 from .schedule import Ramp
 
 
@@ -59,7 +59,7 @@ class DriveSpectraJob(Job):
         return np.asarray(orders[orders <= self.highest])
 
     def work(self, fmus: Fmus, items: Sequence[Structure], previous: Table | None) -> Table:
-        records = [self.record_displacements(fmus, structure) for structure in items]
+        records = [self.record_displacements_and_speed(fmus, structure) for structure in items]
         lines = len(self.orders())
         spectra, speeds = [], []
         for displacement, speed in records:
@@ -68,22 +68,24 @@ class DriveSpectraJob(Job):
             speeds.append(speed)
         return {"acceleration": np.array(spectra), "speed": np.array(speeds)}
 
-    def record_displacements(self, fmus: Fmus, structure: Structure) -> tuple[np.ndarray, float]:
+    def record_displacements_and_speed(
+        self, fmus: Fmus, structure: Structure
+    ) -> tuple[np.ndarray, float]:
         """Simulate ramp and hold; return displacements (2, samples), m, and mean speed, rad/s."""
         scheme = scheme_from_arguments(structure, self.step, 0.0)
-        job = couple_job(structure, self.drive, self.approach, scheme)
+        job = make_couple_job(structure, self.drive, self.approach, scheme)
         steps = range(math.ceil((self.approach.duration + self.hold) / self.step))
-        with begin_run(job, fmus) as run:
-            ends = run.revolve(steps)["time"][-self.revolutions - 1 :]
+        with open_motor_run(job, fmus) as run:
+            ends = run.run_steps_by_revolution(steps)["time"][-self.revolutions - 1 :]
             if len(ends) < 2:
                 raise InputError(
                     f"the motor completed no two revolutions at {self.approach.last:g} V: "
                     "raise the voltage or the duration"
                 )
             speed = TURN * (len(ends) - 1) / (ends[-1] - ends[0])
-            return self.sample_displacements(run, TURN / speed / self.points), float(speed)
+            return self.run_and_sample_displacements(run, TURN / speed / self.points), float(speed)
 
-    def sample_displacements(self, run: MotorRun, interval: float) -> np.ndarray:
+    def run_and_sample_displacements(self, run: MotorRun, interval: float) -> np.ndarray:
         """Run on at equal steps; return both masses' absolute displacements, m, (2, samples)."""
         count = self.revolutions * self.points
         record = run.master.run([self.approach.last] * count, h=interval)
@@ -94,7 +96,7 @@ class DriveSpectraJob(Job):
     def is_captured(self, fmus: Fmus) -> bool:
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
         threshold = own_resonance.dividing_speed(structure, self.drive) * structure.omega
-        return short.record_displacements(fmus, structure)[1] < threshold
+        return short.record_displacements_and_speed(fmus, structure)[1] < threshold
 
     def dataset(self, table: Table) -> xr.Dataset:
         orders, speeds = self.orders(), table["speed"]
@@ -114,7 +116,7 @@ class DriveSpectraJob(Job):
         return xr.Dataset(variables, coordinates, {"title": title})
 
 
-def voltage_at_resonance(structure: Structure, drive: Drive, share: float = 0.6) -> float:
+def voltage_between_jumps(structure: Structure, drive: Drive, share: float = 0.6) -> float:
     folds = averaged.folds(structure, drive)
     if not folds:
         raise InputError("voltage: expected one, in V; by the averaged theory there is no jump")
@@ -145,7 +147,7 @@ def drive_spectra(
     drive : Drive
     voltage : float, optional
         V; by default 0.6 of the way between the jumps of the averaged theory, see
-        ``voltage_at_resonance``, or less where the delaminated structure has jumped by then.
+        ``voltage_between_jumps``, or less where the delaminated structure has jumped by then.
     begin : float, optional
         Voltage from which it is approached, V; 0.85 of it by default.
     rate : float, optional
@@ -200,7 +202,7 @@ def drive_spectra(
     checked_range("hold", hold, "s", low=0.0, high=MAX_STEPS * step)
     record = (revolutions, points, highest)
     shares = (0.6, 0.45, 0.3, 0.15) if voltage is None else ()
-    tried = [voltage_at_resonance(structure, drive, share) for share in shares]
+    tried = [voltage_between_jumps(structure, drive, share) for share in shares]
     tried = tried or [checked_number("voltage", voltage)]
     jobs = []
     for target in tried:

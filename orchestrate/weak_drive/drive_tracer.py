@@ -35,14 +35,14 @@ IMPACT, FLIGHT = KINDS[Kind.GRAZING], KINDS[Kind.TOUCHING]
 BACK = 3  # motions over which the slope of a margin is taken
 
 
-class Margins(NamedTuple):
+class GrazingMargins(NamedTuple):
     """Store how far a motion's gaps and impacts are from grazing, non-dimensional."""
 
     flight: float  # smallest gap at which the masses turn away from each other without an impact
     impact: float  # smallest closing speed of an impact, over omega
 
 
-def grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins:
+def measure_grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) -> GrazingMargins:
     shooter.angle = angle
     master, voltage = shooter.begin_period(unknowns)
     gaps, closing = [math.inf], [math.inf]
@@ -52,12 +52,14 @@ def grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins
         if master.motion.impact_time != before.impact_time:
             closing.append(float(shooter.fmus[0].get("impact_velocity")[0]))
         elif before.v2 < before.v1 and master.motion.v2 >= master.motion.v1:
-            gaps.append(turning_gap(shooter.structure, before, master.motion, master.scheme.h))
+            gaps.append(
+                smallest_gap_in_step(shooter.structure, before, master.motion, master.scheme.h)
+            )
     length = float(shooter.units[0])
-    return Margins(min(gaps) / length, min(closing) / length / shooter.structure.omega)
+    return GrazingMargins(min(gaps) / length, min(closing) / length / shooter.structure.omega)
 
 
-def turning_gap(
+def smallest_gap_in_step(
     structure: Structure, before: OscillatorOutputs, after: OscillatorOutputs, h: float
 ) -> float:
     """Return the smallest gap within a step without an impact, m."""
@@ -72,12 +74,12 @@ def turning_gap(
     return float(gap(gap.derivative().roots(extrapolate=False)).min())
 
 
-def next_grazing(
+def extrapolate_next_grazing(
     shooter: Shooter, motions: Sequence[tuple[Floats, float]]
 ) -> tuple[Kind | None, float]:
     """Extrapolate which grazing comes next along a branch, and how far away it is."""
     last_motions = motions[-2 * BACK :]
-    falling = np.array([grazing_margins(shooter, *motion) for motion in last_motions])
+    falling = np.array([measure_grazing_margins(shooter, *motion) for motion in last_motions])
     places = np.array([unknowns[-2:] for unknowns, _ in last_motions])
     kind, distance = None, math.inf
     for last in range(BACK, len(last_motions)):
@@ -123,11 +125,11 @@ class ShooterStepper(continuation.ArclengthStepper[Shooter]):
     jacobian: Floats
 
     def root_after(self, length: float) -> continuation.Root:
-        self.curve.restart(self.root.unknowns, self.jacobian)
+        self.curve.set_root_jacobian(self.root.unknowns, self.jacobian)
         return super().root_after(length)
 
     def solve_at(self, unknown: int, value: float) -> continuation.Root:
-        self.curve.restart(self.root.unknowns, self.jacobian)
+        self.curve.set_root_jacobian(self.root.unknowns, self.jacobian)
         return super().solve_at(unknown, value)
 
 
@@ -164,7 +166,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
 
     def go_on_from(self, point: Motion) -> Motion:
         """Set the stepper to a motion, begun far from impacts, for the next step; return it."""
-        motion = start_far_from_impacts(self.shooter, point)
+        motion = begin_far_from_impacts(self.shooter, point)
         self.stepper.root, self.stepper.jacobian = motion.root, motion.matrix
         self.shot = self.shooter.shoot(motion.root.unknowns)
         self.half_period_change = half_period_change(self.shooter, motion.root)
@@ -201,7 +203,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
             segment.end = UNFINISHED
             return
         motions = [each for each in segment.points if each.together == segment.points[-1].together]
-        kind, distance = next_grazing(
+        kind, distance = extrapolate_next_grazing(
             self.shooter, [(motion.root.unknowns, motion.angle) for motion in motions]
         )
         segment.end = NO_CONVERGENCE if kind is None else KINDS[kind]
@@ -219,36 +221,36 @@ def motion_at(shooter: Shooter, root: continuation.Root, direction: Floats) -> M
     return Motion(along, shooter.matrix, values, period, shooter.angle, shooter.together)
 
 
-def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
-    shooter.renew_jacobian(guess)
+def find_motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
+    shooter.compute_jacobian(guess)
     speed = continuation.unit_vector(len(guess), -1)
     root = continuation.newton_correct(shooter, guess, speed, max_iterations=ITERATIONS)
     return motion_at(shooter, root, speed if up else -speed)
 
 
-def double_period(shooter: Shooter, flip: Motion) -> Motion:
+def find_doubled_motion(shooter: Shooter, flip: Motion) -> Motion:
     for distance in (3e-3, 1e-3, 3e-4):
-        shooter.begin_together(flip.together)
-        shooter.repeat_after(flip.period.revolutions)
+        shooter.set_start_contact(flip.together)
+        shooter.set_revolutions(flip.period.revolutions)
         shooter.angle, shooter.matrix = flip.angle, flip.matrix
         away = np.append(shooter.flip_direction(), [0.0, 0.0])
         guess = flip.root.unknowns + distance * away
-        shooter.repeat_after(2 * shooter.turns)
+        shooter.set_revolutions(2 * shooter.turns)
         with contextlib.suppress(continuation.NoConvergenceError):
             root = continuation.newton_correct(shooter, guess, away, max_iterations=ITERATIONS)
             return motion_at(shooter, root, away)
     raise continuation.NoConvergenceError("no motion of twice the period near a period doubling")
 
 
-def start_far_from_impacts(shooter: Shooter, motion: Motion) -> Motion:
+def begin_far_from_impacts(shooter: Shooter, motion: Motion) -> Motion:
     """Return a motion begun far from impacts: the same, or begun ``period.clear`` steps later."""
     # a motion that begins with an impact has no derivative
     period, together = motion.period, motion.period.together
     if period.share > 0.3 and together == motion.together:
         return motion
     root = motion.root
-    unknowns = shooter.begin_later(root.unknowns, period.clear, together)
-    matrix = shooter.renew_jacobian(unknowns)
+    unknowns = shooter.shift_start(root.unknowns, period.clear, together)
+    matrix = shooter.compute_jacobian(unknowns)
     direction = np.append(np.zeros(shooter.size), root.tangent[-2:])  # of voltage and speed
     tangent = continuation.unit_tangent(np.vstack([matrix, direction]))
     moved = replace(root, unknowns=unknowns, tangent=tangent)
@@ -261,7 +263,7 @@ def half_period_change(shooter: Shooter, root: continuation.Root) -> Floats:
     """Return how the state changes over half the period; 0 for an odd one."""
     if shooter.turns % 2:
         return np.zeros(1)
-    return shooter.change_in(root.unknowns, shooter.turns // 2)
+    return shooter.state_change_after(root.unknowns, shooter.turns // 2)
 
 
 def distance_between(first: Motion, second: Motion) -> float:

@@ -47,9 +47,9 @@ class EnergyBalance:
         self.sums = np.zeros(3)  # lost by the structure, defects, and their sizes
         self.start = np.full(len(ACCOUNTS), np.nan)
 
-    def add(self, record: Record) -> Energies:
+    def add_record(self, record: Record) -> Energies:
         """Return the energies since the start at all rows of a record, and add them up."""
-        steps = np.stack([self.lost(record), defects(record)])
+        steps = np.stack([self.energy_lost_per_step(record), coupling_defects(record)])
         steps = np.vstack([steps, np.abs(steps[1])])
         sums = np.cumsum(np.hstack([self.sums[:, np.newaxis], steps]), axis=1)
         motion, velocity, s = record.motion(), record["box_velocity"], self.structure
@@ -65,9 +65,9 @@ class EnergyBalance:
         missing = since[0] - sum(since[1:])
         return Energies._make([*since, missing, sums[1], sums[2]])
 
-    def lost(self, record: Record) -> Floats:
+    def energy_lost_per_step(self, record: Record) -> Floats:
         before, after = record.before.motion(), record.after.motion()
-        h, acceleration = record.after["h"], record.after.acceleration()
+        h, acceleration = record.after["h"], record.after.acceleration_cubics()
         # the relative momentum over a step is a quartic in t/h
         m1, m2 = self.structure.m1, self.structure.m2
         mass = m1 + m2
@@ -94,7 +94,7 @@ class EnergyBalance:
         self.sums, self.start = np.array(numbers[:3]), np.array(numbers[3:])
 
 
-def defects(record: Record) -> Floats:
+def coupling_defects(record: Record) -> Floats:
     """Return the work that the box takes, by the drive's account, less what the masses give."""
     taken: Floats = np.diff(record["box_force_work"])
     return taken - record.after["given"]

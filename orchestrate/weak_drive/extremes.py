@@ -24,9 +24,9 @@ class Range(NamedTuple):
     low: Floats
     high: Floats
 
-    def widen(self, steps: Any, places: Sequence[Floats]) -> Range:
+    def widen(self, steps: Any, positions: Sequence[Floats]) -> Range:
         """Widen the range, in place, by positions in some steps; NaN counts as none; return it."""
-        for position in places:
+        for position in positions:
             self.low[steps] = np.fmin(self.low[steps], position)
             self.high[steps] = np.fmax(self.high[steps], position)
         return self
@@ -40,7 +40,7 @@ def taylor_value(series: Sequence[Any], time: Any, order: int = 0) -> Any:
     return total
 
 
-def taylor_coefficients(
+def derivatives_of_x1(
     structure: Structure, motion: OscillatorOutputs, acceleration: Cubic
 ) -> list[Any]:
     """Return the derivatives of x1 at states, given the box's acceleration."""
@@ -71,21 +71,23 @@ def extrema(series: Sequence[Any], first: Any, last: Any) -> list[Any]:
     return [taylor_value(series, first), taylor_value(series, last), between]
 
 
-def range_of_mass(structure: Structure, record: Record) -> Range:
+def range_of_mass_1(structure: Structure, record: Record) -> Range:
     """Return the lowest and the highest x1, of mass 1, within each step, by its turning points."""
     before, after = record.before.motion(), record.after.motion()
-    cubic = record.after.acceleration()
+    cubic = record.after.acceleration_cubics()
     h = record.after["h"]
     hit = after.impact_time - record.before["time"]
     impact = (after.impact_time != before.impact_time) & (hit >= 0.0) & (hit <= h)
     found = Range(np.minimum(before.x1, after.x1), np.maximum(before.x1, after.x1))
     turning = np.flatnonzero(impact | (before.v1 * after.v1 < 0.0))
     last = np.where(impact, hit, h)[turning]
-    series = taylor_coefficients(structure, at(before, turning), at(cubic, turning))
+    series = derivatives_of_x1(
+        structure, select_steps(before, turning), select_steps(cubic, turning)
+    )
     found.widen(turning, extrema(series, 0.0 * last, last))
     struck = np.flatnonzero(impact)
-    end = end_derivatives(at(cubic, struck), h[struck])
-    back = taylor_coefficients(structure, at(after, struck), end)
+    end = end_derivatives(select_steps(cubic, struck), h[struck])
+    back = derivatives_of_x1(structure, select_steps(after, struck), end)
     return found.widen(struck, extrema(back, (hit - h)[struck], 0.0 * h[struck]))
 
 
@@ -93,13 +95,13 @@ def range_of_box(record: Record) -> Range:
     position, velocity = record["box_position"], record["box_velocity"]
     found = Range(np.minimum(position[:-1], position[1:]), np.maximum(position[:-1], position[1:]))
     turning = np.flatnonzero(velocity[:-1] * velocity[1:] < 0.0)
-    cubic = at(record.after.acceleration(), turning)
+    cubic = select_steps(record.after.acceleration_cubics(), turning)
     h = record.after["h"][turning]
     series = (position[turning], velocity[turning], *cubic)
     return found.widen(turning, extrema(series, 0.0 * h, h))
 
 
-def at(values: Any, steps: Any) -> Any:
+def select_steps(values: Any, steps: Any) -> Any:
     """Return a named tuple of arrays, or a plain one, at some steps."""
     chosen = (column[steps] for column in values)
     return type(values)._make(chosen) if hasattr(values, "_make") else tuple(chosen)

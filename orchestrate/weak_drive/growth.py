@@ -32,18 +32,18 @@ def growth_rate(run: MotorRun, voltage: float, speed: float) -> float:
         return math.nan
     structure, drive = run.job.structure, run.job.drive
     omega = structure.omega
-    length = float(averaged.amplitude(structure, drive, speed / omega)) * drive.length
+    length = float(averaged.relative_amplitude(structure, drive, speed / omega)) * drive.length
     shooter = Shooter((run.oscillator, run.drive), structure, drive, 1, STEPS, length)
     shooter.angle = run.master["angle"] % TURN
-    shooter.begin_together(structure.bonded or run.master.motion.x_rel == 0.0)
+    shooter.set_start_contact(structure.bonded or run.master.motion.x_rel == 0.0)
     ends = [voltage / shooter.volts, speed / omega]
     unknowns = np.append(shooter.scaled_state(run.master), ends)
     try:
         period = shooter.observe_period(unknowns)
         if period.share < CLEAR or period.together != shooter.together:
-            unknowns = shooter.begin_later(unknowns, period.clear, period.together)
+            unknowns = shooter.shift_start(unknowns, period.clear, period.together)
         for turns in TURNS:
-            shooter.repeat_after(turns)
+            shooter.set_revolutions(turns)
             if np.abs(shooter.residual(unknowns)).max() < NEAR:
                 return math.log(largest_multiplier(shooter, unknowns)) * speed / (turns * TURN)
     except SOLVER_ERRORS:
@@ -56,7 +56,7 @@ def growth_rate(run: MotorRun, voltage: float, speed: float) -> float:
 def largest_multiplier(shooter: Shooter, guess: Floats) -> float:
     normal, offset = unit_vector(len(guess), -2), np.zeros_like(guess)
     for _ in range(ITERATIONS):
-        jacobian = shooter.renew_jacobian(guess + offset)
+        jacobian = shooter.compute_jacobian(guess + offset)
         offset, step = newton_step(shooter, guess, offset, normal, jacobian)
         if not np.abs(offset).max() < NEAR:
             break

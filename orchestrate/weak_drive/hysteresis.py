@@ -35,7 +35,7 @@ from ..model.drive import Drive
 from ..model.structure import Structure
 from ..running.job import Table
 from .ramp_record import RampRecord
-from .run import MotorRun, state_rows
+from .run import MotorRun, select_state
 from .schedule import Course, Schedule
 from .steady_speed import SettledSettings, settled_speed
 
@@ -93,7 +93,7 @@ class HysteresisLoop:
 
     def __init__(
         self,
-        begin: Callable[[Schedule], MotorRun],
+        start_run: Callable[[Schedule], MotorRun],
         schedule: Schedule,
         step: float,
         omega: float,
@@ -104,7 +104,7 @@ class HysteresisLoop:
     ) -> None:
         # `volts` is negative where the motor turns backward; `max_hold` is in s;
         # `growth` returns the rate, 1/s, at which disturbances of a run's motion grow
-        self.begin, self.schedule, self.step = begin, schedule, step
+        self.start_run, self.schedule, self.step = start_run, schedule, step
         self.omega, self.volts, self.max_hold = omega, volts, max_hold
         self.settings, self.growth = settings or HysteresisSettings(), growth
         self.checkpoints: dict[int, Table] = {}
@@ -113,68 +113,70 @@ class HysteresisLoop:
 
     def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
         for i in range(len(table["master_memory"])):
-            state = state_rows(table, slice(i, i + 1))
+            state = select_state(table, slice(i, i + 1))
             self.checkpoints[min((i + 1) * every, steps)] = state
 
-    def state_before(self, step: int) -> Table | None:
+    def ramp_state_before(self, step: int) -> Table | None:
         """Return the ramp's state before a step, from a checkpoint; None at the start."""
         if step not in self.checkpoints and step:
             last = max((known for known in self.checkpoints if known < step), default=0)
-            with closing(self.begin(self.schedule)) as run:
+            with closing(self.start_run(self.schedule)) as run:
                 if last:
                     run.set_state(self.checkpoints[last])
-                run.speeds(range(last, step))
+                run.run_steps_for_speeds(range(last, step))
                 self.checkpoints[step] = run.get_state()
         return self.checkpoints.get(step)
 
-    def hold_step(self, step: int) -> HeldPoint:
+    def hold_ramp_voltage(self, step: int) -> HeldPoint:
         voltage = self.schedule.voltage((step + 0.5) * self.step) / self.volts
-        return self.hold(self.state_before(step), voltage, voltage)
+        return self.move_and_hold(self.ramp_state_before(step), voltage, voltage)
 
     def hold_from(self, point: HeldPoint, voltage: float) -> HeldPoint:
         """Take the voltage slowly from a held point to another one, and hold it there."""
-        return self.hold(point.state, point.voltage, voltage)
+        return self.move_and_hold(point.state, point.voltage, voltage)
 
-    def hold(
-        self, state: Table | None, first: float, voltage: float, least: float = 0.0
+    def move_and_hold(
+        self, state: Table | None, first: float, voltage: float, min_time: float = 0.0
     ) -> HeldPoint:
         """Take the voltage to another one at `rate`, and hold it until the speed settles."""
-        # for the time `least`, s, unless it has left
+        # for the time `min_time`, s, unless it has left
         settings = self.settings
         moves = math.ceil(abs(voltage - first) / settings.rate / self.omega / self.step)
-        count = moves + math.ceil((least + self.max_hold) / self.step)
+        count = moves + math.ceil((min_time + self.max_hold) / self.step)
         piece = max(1, round(settings.piece / self.omega / self.step))
         times = (0.0, moves * self.step, count * self.step)
         volts = (self.volts * first, self.volts * voltage, self.volts * voltage)
         speeds, speed, error, time = np.zeros(0), math.nan, 0.0, 0.0
-        with closing(self.begin(Course(times, volts))) as run:
+        with closing(self.start_run(Course(times, volts))) as run:
             if state is not None:
                 run.set_state(state)
-            run.speeds(range(moves))
+            run.run_steps_for_speeds(range(moves))
             for begin in range(moves, count, piece):
                 end = min(begin + piece, count)
-                found, time = run.speeds(range(begin, end)), (end - moves) * self.step
+                found, time = run.run_steps_for_speeds(range(begin, end)), (end - moves) * self.step
                 speeds = np.append(speeds, np.abs(found) / self.omega)
                 speed, error = settled_speed(speeds, settings)
                 left = abs(speed - speeds[: settings.block].mean()) - error > settings.clear
-                if math.isfinite(speed) and (left or time >= least):
+                if math.isfinite(speed) and (left or time >= min_time):
                     break
             self.spent += time
             return HeldPoint(voltage, speed, error, run.get_state(), time)
 
     # -- the rule --
 
-    def decide(self, record: RampRecord) -> list[Jump]:
+    def decide_jumps(self, record: RampRecord) -> list[Jump]:
         jumps = []
         for leg in record.legs():
             first, last = record.eta0(leg[[0, -1]]).tolist()
             if self.max_hold:
-                jumps += self.jumps(self.hold_step(record.step(int(leg[0]))), last)
+                jumps += self.find_jumps(
+                    self.hold_ramp_voltage(record.step_of_row(int(leg[0]))), last
+                )
             else:
                 jumps.append(Jump(UNDECIDED, first, last))
-        return merge_overlapping(jumps, record.sign)
+        return merge_overlapping(jumps, record.direction)
 
-    def jumps(self, first: HeldPoint, last: float) -> list[Jump]:
+    def find_jumps(self, first: HeldPoint, last: float) -> list[Jump]:
         sign = math.copysign(1.0, last - first.voltage)
         points = self.hold_grid(first, last)
         if not points:
@@ -183,26 +185,26 @@ class HysteresisLoop:
         self.spent, i = 0.0, 0
         while i < len(points) - 1:
             low, high = points[i : i + 2]
-            least = self.least(low, high)
-            if self.excess(points, i, jumps) <= 0.0:
+            lifetime = self.required_lifetime(low, high)
+            if self.excess_change(points, i, jumps) <= 0.0:
                 i += 1
             elif self.spent > self.settings.budget * self.max_hold:
                 del points[i + 1 :]
-            elif self.insert_between(points, i):
+            elif self.insert_point_between(points, i):
                 continue
-            elif low.lasts < least:
-                points[i] = self.lasting(low, high, least)
+            elif low.lasts < lifetime:
+                points[i] = self.hold_until_lasting(low, high, lifetime)
                 if points[i].lasts:
                     continue
                 if math.isnan(points[i].speed):
                     self.left_out.add(points.pop(i).voltage)
                 jumps = [jump for jump in jumps if sign * (jump.high - low.voltage) < 0.0]
                 i = max(i - 1, 0)
-            elif jump := self.jump_over(points, i, jumps):
+            elif jump := self.update_step_and_find_jump(points, i, jumps):
                 jumps.append(jump)
                 i += 1
         known = [jump for jump in jumps if jump.outcome != NONE]
-        if not known and not self.comes_back(points):
+        if not known and not self.comes_back_over_all(points):
             return [Jump(UNDECIDED, first.voltage, last)]
         beyond = [(first.voltage, points[0].voltage), (points[-1].voltage, last)]
         unsettled = [Jump(UNDECIDED, *ends) for ends in beyond if ends[0] != ends[1]]
@@ -216,19 +218,23 @@ class HysteresisLoop:
             points.append(self.hold_from(points[-1], voltage))
         return [point for point in points if math.isfinite(point.speed)]
 
-    def excess(self, points: list[HeldPoint], i: int, jumps: list[Jump]) -> float:
+    def excess_change(self, points: list[HeldPoint], i: int, jumps: list[Jump]) -> float:
         """Return by how much the speed changes more over a step than on one branch."""
         low, high = points[i : i + 2]
         length = abs(high.voltage - low.voltage)
         begin = abs(jumps[-1].high - low.voltage) if jumps else math.inf
         before = [p for p in points[:i] if abs(p.voltage - low.voltage) <= begin]
         near, others = (low, before) if before else (high, points[i + 2 :])
-        slopes = {abs(abs(p.voltage - near.voltage) - length): slope(p, near) for p in others}
+        slopes = {abs(abs(p.voltage - near.voltage) - length): speed_slope(p, near) for p in others}
         expected = slopes[min(slopes)] if slopes else 1.0  # over about as long a step
-        change = abs(slope(low, high) - expected) * length
-        return change - self.settings.bend - min(self.error(low, high), self.settings.same)
+        change = abs(speed_slope(low, high) - expected) * length
+        return (
+            change
+            - self.settings.bend
+            - min(self.error_of_difference(low, high), self.settings.same)
+        )
 
-    def insert_between(self, points: list[HeldPoint], i: int) -> bool:
+    def insert_point_between(self, points: list[HeldPoint], i: int) -> bool:
         """Hold voltages within a wide step until one settles; insert it and return whether any."""
         low, high = points[i : i + 2]
         change = high.voltage - low.voltage
@@ -236,24 +242,29 @@ class HysteresisLoop:
             voltage = low.voltage + part * change
             if voltage in self.left_out:
                 continue
-            point = self.hold_beside(low, voltage, high, lives=False)
+            point = self.hold_within_step(low, voltage, high, must_last=False)
             if math.isfinite(point.speed):
                 points.insert(i + 1, point)
                 return True
             self.left_out.add(voltage)
         return False
 
-    def jump_over(self, points: list[HeldPoint], i: int, jumps: list[Jump]) -> Jump | None:
-        """Return the jump over a step, by the way back; None if its motions are to be held on."""
+    def update_step_and_find_jump(
+        self, points: list[HeldPoint], i: int, jumps: list[Jump]
+    ) -> Jump | None:
+        """Replace a step's end by what lasts there, drop unsure ones after; return the jump."""
         low, high = points[i : i + 2]
-        landed = self.hold_beside(low, high.voltage, high, lives=True)
+        landed = self.hold_within_step(low, high.voltage, high, must_last=True)
         points[i + 1] = high = landed if math.isfinite(landed.speed) else high
-        if low.lasts < self.least(low, high) or self.excess(points, i, jumps) <= 0.0:
+        if (
+            low.lasts < self.required_lifetime(low, high)
+            or self.excess_change(points, i, jumps) <= 0.0
+        ):
             return None
-        outcome, change = self.way_back(low, high), abs(high.speed - low.speed)
-        is_clear = math.copysign(change, slope(low, high)) >= self.settings.clear
+        outcome, change = self.outcome_of_way_back(low, high), abs(high.speed - low.speed)
+        is_clear = math.copysign(change, speed_slope(low, high)) >= self.settings.clear
         if outcome != NONE and not is_clear:
-            if not self.lands_surely(low, high):
+            if not self.lands_on_one_motion(low, high):
                 del points[i + 2 :]
             elif change < self.settings.small:
                 outcome = NONE
@@ -261,18 +272,22 @@ class HysteresisLoop:
             outcome = UNDECIDED
         return Jump(outcome, low.voltage, high.voltage, low.speed, high.speed)
 
-    def way_back(self, low: HeldPoint, high: HeldPoint) -> int:
+    def outcome_of_way_back(self, low: HeldPoint, high: HeldPoint) -> int:
         """Return whether two motions last at a step's lower voltage and the first is lost."""
         back = self.hold_from(high, low.voltage)
-        if self.is_same(back, low):
+        if self.may_be_same_motion(back, low):
             return NONE
-        later = self.lasting(back, back, self.least(back, back))
-        if self.is_same(later, low):
+        later = self.hold_until_lasting(back, back, self.required_lifetime(back, back))
+        if self.may_be_same_motion(later, low):
             return NONE
-        lasts = self.distance(later, back) <= self.settings.same
-        return LOST if lasts and self.distance(back, low) >= self.settings.clear else UNDECIDED
+        lasts = self.least_speed_difference(later, back) <= self.settings.same
+        return (
+            LOST
+            if lasts and self.least_speed_difference(back, low) >= self.settings.clear
+            else UNDECIDED
+        )
 
-    def lands_surely(self, low: HeldPoint, high: HeldPoint) -> bool:
+    def lands_on_one_motion(self, low: HeldPoint, high: HeldPoint) -> bool:
         """Return whether a motion that had converged comes to one other wherever it is lost."""
         step, point = math.copysign(self.settings.width, high.voltage - low.voltage), high
         for n in range(self.settings.landings):
@@ -282,36 +297,38 @@ class HysteresisLoop:
                 return False
         return low.error == 0.0
 
-    def hold_beside(
-        self, low: HeldPoint, voltage: float, high: HeldPoint, lives: bool
+    def hold_within_step(
+        self, low: HeldPoint, voltage: float, high: HeldPoint, must_last: bool
     ) -> HeldPoint:
         """Hold a voltage within a step or at its end; the motion before has to last, if it does."""
-        # a motion of which no growth is known only if it is held for `lives`
+        # a motion of which no growth is known only with `must_last`
         point = self.hold_from(low, voltage)
         if abs(point.speed - low.speed) < abs(point.speed - high.speed):
-            return self.lasting(point, high, self.least(point, high) if lives else 0.0)
+            return self.hold_until_lasting(
+                point, high, self.required_lifetime(point, high) if must_last else 0.0
+            )
         return point._replace(time=max(point.time, high.time))
 
-    def least(self, low: HeldPoint, high: HeldPoint) -> float:
+    def required_lifetime(self, low: HeldPoint, high: HeldPoint) -> float:
         """Return for how long, s, a motion before a step has to last if it may be a transient."""
         least = self.settings.lives * max(low.time, high.time)
         return min(least, self.settings.patience * self.max_hold)
 
-    def lasting(self, point: HeldPoint, high: HeldPoint, least: float) -> HeldPoint:
+    def hold_until_lasting(self, point: HeldPoint, high: HeldPoint, lifetime: float) -> HeldPoint:
         """Hold a motion until it is known to last; return it, or what it has become."""
-        # for the time `least`, s, if it is not known how disturbances of it grow
+        # for the time `lifetime`, s, if it is not known how disturbances of it grow
         rate = self.growth_rate(point)
         if rate <= 0.0:
             return point._replace(lasts=math.inf)
         grown = self.settings.growths / rate if rate > 0.0 else 0.0
         if grown > self.settings.patience * self.max_hold:
             return point._replace(speed=math.nan, lasts=0.0)
-        least = max(grown, least - point.lasts)
-        if least <= 0.0:
+        lifetime = max(grown, lifetime - point.lasts)
+        if lifetime <= 0.0:
             return point
-        later = self.hold(point.state, point.voltage, point.voltage, least)
+        later = self.move_and_hold(point.state, point.voltage, point.voltage, lifetime)
         lasted = point.lasts + later.time
-        if self.distance(later, point) <= self.settings.same:
+        if self.least_speed_difference(later, point) <= self.settings.same:
             return later._replace(time=point.time, lasts=lasted)
         return later._replace(time=max(point.time + lasted, high.time))
 
@@ -319,12 +336,12 @@ class HysteresisLoop:
         """Return the rate, 1/s, at which disturbances of a motion grow; NaN if it is unknown."""
         if self.growth is None:
             return math.nan
-        with closing(self.begin(self.schedule)) as run:
+        with closing(self.start_run(self.schedule)) as run:
             run.set_state(point.state)
             speed = math.copysign(point.speed, self.volts) * self.omega
             return self.growth(run, point.voltage * self.volts, speed)
 
-    def comes_back(self, points: list[HeldPoint]) -> bool:
+    def comes_back_over_all(self, points: list[HeldPoint]) -> bool:
         """Return whether the speed comes back, less than `clear` away, over all voltages."""
         # single ones between the ends need not settle
         last, settled = points[-1], True
@@ -341,21 +358,21 @@ class HysteresisLoop:
                 return False
         return True
 
-    def is_same(self, point: HeldPoint, other: HeldPoint) -> bool:
+    def may_be_same_motion(self, point: HeldPoint, other: HeldPoint) -> bool:
         """Return whether two settled speeds may be of one motion, and are not `clear` away."""
         is_near = abs(point.speed - other.speed) < self.settings.clear
-        return is_near and self.distance(point, other) <= self.settings.same
+        return is_near and self.least_speed_difference(point, other) <= self.settings.same
 
-    def distance(self, point: HeldPoint, other: HeldPoint) -> float:
+    def least_speed_difference(self, point: HeldPoint, other: HeldPoint) -> float:
         """Return how far two settled speeds are apart at least, by their errors."""
-        return abs(point.speed - other.speed) - self.error(point, other)
+        return abs(point.speed - other.speed) - self.error_of_difference(point, other)
 
-    def error(self, point: HeldPoint, other: HeldPoint) -> float:
+    def error_of_difference(self, point: HeldPoint, other: HeldPoint) -> float:
         """Return the error of the difference between two settled speeds."""
         return math.hypot(point.error, other.error)
 
 
-def slope(low: HeldPoint, high: HeldPoint) -> float:
+def speed_slope(low: HeldPoint, high: HeldPoint) -> float:
     return (high.speed - low.speed) / (high.voltage - low.voltage)
 
 

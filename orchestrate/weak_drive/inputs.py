@@ -43,7 +43,9 @@ class Inputs:
     """The inputs of one drive by name; those with derivatives are last, a controlled one of all."""
 
     def __init__(self, inputs: Sequence[tuple[str, Input]], drive: Description) -> None:
-        whole = {name for name, _ in inputs if all(o in drive.variables for o in cubic_names(name))}
+        whole = {
+            name for name, _ in inputs if all(o in drive.variables for o in cubic_input_names(name))
+        }
         courses = [(name, one) for name, one in inputs if isinstance(one, Course)]
         controls = [(name, one) for name, one in inputs if not isinstance(one, Course)]
         self.held = [(name, one) for name, one in courses if name not in whole]
@@ -57,55 +59,55 @@ class Inputs:
         # place of the first cubic, for the master
         self.cubic = len(self.names) if whole else -1
         for name, _ in [*self.cubics, *(one for one in controls if one[0] in whole)]:
-            self.names += cubic_names(name)
+            self.names += cubic_input_names(name)
         self.state: ControllerState = self.control.begin() if self.control else ()
 
     def start_values(self) -> dict[str, float]:
         values = {name: one.voltage(0.0) for name, one in [*self.held, *self.cubics]}
         return {name: values.get(name, 0.0) for name in self.names}
 
-    def over_steps(self, edges: Floats, width: int = 0, earlier: int = 0) -> Floats:
+    def rows_over_steps(self, edges: Floats, width: int = 0, earlier: int = 0) -> Floats:
         """Return inputs of steps between edges (a supply's mean), with ends if ``width``."""
         count = len(self.names)
         h, rows = np.diff(edges), np.zeros((len(edges) - 1, max(width, count)))
         ends = rows[:, count:] if width > count else np.zeros((len(h), count))
         for i, (_, course) in enumerate(self.held):
-            _, ends[:, i], rows[:, i], lever = course.over_steps(edges)
+            _, ends[:, i], rows[:, i], lever = course.ends_means_and_moments(edges)
             moments = np.append([0.0, 0.0], lever / h**2)
             if not len(h) or np.ptp(h) <= 1e-6 * h[0]:
                 for back, share in enumerate(MADE_UP):
                     rows[:, i] += share * moments[2 - back : len(moments) - back]
         for i, (_, course) in enumerate(self.cubics):
-            first, last, mean, lever = course.over_steps(edges)
+            first, last, mean, lever = course.ends_means_and_moments(edges)
             place = self.cubic + 4 * i
             cubics = matched_cubics(first, last, mean, 0.5 * mean + lever / h**2, h)
             rows[:, place : place + 4] = cubics
             ends[:, place : place + 4] = np.transpose(end_derivatives(tuple(cubics.T), h))
         if isinstance(self.control, Supply):
-            rows[:, self.controlled] = self.control.course.over_steps(edges)[2]
+            rows[:, self.controlled] = self.control.course.ends_means_and_moments(edges)[2]
         return rows[earlier:]
 
-    def run(self, master: Master, steps: range, h: float, first: int = 0) -> Record:
+    def run_master(self, master: Master, steps: range, h: float, first: int = 0) -> Record:
         """Run both FMUs over some steps of one length, which all have from the first one on."""
         earlier = min(2, steps.start - first)  # steps whose first moments are made up for in these
         edges = np.arange(steps.start - earlier, steps.stop + 1, dtype=np.float64) * h
-        rows = self.over_steps(edges, master.width, earlier)
+        rows = self.rows_over_steps(edges, master.input_width, earlier)
         if self.control is None:
             return master.run(rows, h)
-        return master.run_controlled(self._controlled(rows.tolist(), h, master), len(rows), h)
+        return master.run_controlled(self._controlled_rows(rows.tolist(), h, master), len(rows), h)
 
-    def _controlled(
+    def _controlled_rows(
         self, rows: list[list[float]], h: float, master: Master
     ) -> Iterator[list[float]]:
         first, count = self.controlled, len(self.names)
         for row in rows:
-            values, ends = self._commanded(row[first], h, master)
+            values, ends = self._update_control(row[first], h, master)
             row[first : first + len(values)] = values
             if len(row) > count:
                 row[count + first : count + first + len(values)] = ends
             yield row
 
-    def _commanded(
+    def _update_control(
         self, available: float, h: float, master: Master
     ) -> tuple[Sequence[float], Sequence[float]]:
         """Return what a control says of its input over a step, and at the step's end."""
@@ -122,11 +124,11 @@ class Inputs:
         return mean, mean
 
 
-def cubic_names(name: str) -> list[str]:
+def cubic_input_names(name: str) -> list[str]:
     return [name, *(f"{name}_{order}" for order in (1, 2, 3))]
 
 
-def check_inputs(inputs: Sequence[tuple[str, Input]], links: Mapping[str, Link]) -> None:
+def check_input_connections(inputs: Sequence[tuple[str, Input]], links: Mapping[str, Link]) -> None:
     """Raise unless no input is connected, and one at most controlled by a known acceleration."""
     connected = {link.theirs for link in links.values()}
     for name in [name for name, _ in inputs if name in connected]:

@@ -25,12 +25,12 @@ from ..response.labels import variable
 from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import compute_dataset
-from .capture import System, check_parameter_values
+from .capture import System, checked_parameter_values
 from .couple import (
     DIRECTIONS,
     KINDS,
     CoupleJob,
-    couple_job,
+    make_couple_job,
     require_motor,
     schedule_from_arguments,
     scheme_from_arguments,
@@ -68,17 +68,22 @@ class JumpVoltagesJob(Job):
     def work(self, fmus: Fmus, items: Sequence[Structure], previous: Any) -> Table:
         rows, shown, decided = [], [], []
         for structure in items:
-            slowest = couple_job(structure, self.drive, self.schedules[0], self.scheme)
-            table = slowest.run_here(fmus)
+            slowest = make_couple_job(structure, self.drive, self.schedules[0], self.scheme)
+            table = slowest.run_all_chunks(fmus)
             first = slowest.dataset(table).sel(jump=list(DIRECTIONS))
             rows.append([first[name].values for name in COLUMNS])
             decided.append(first.decided.values.astype("U20"))
             runs = [(slowest, table)]
             for schedule in self.schedules[1:]:
-                job = couple_job(structure, self.drive, schedule, self.scheme, hold=0.0)
-                runs.append((job, job.run_here(fmus)))
-            jumps = [each[0] if each else None for each in slowest.jumps(table)]
-            shown.append([[shown_jump(*run, *each) for each in enumerate(jumps)] for run in runs])
+                job = make_couple_job(structure, self.drive, schedule, self.scheme, hold=0.0)
+                runs.append((job, job.run_all_chunks(fmus)))
+            jumps = [each[0] if each else None for each in slowest.jumps_by_direction(table)]
+            shown.append(
+                [
+                    [ramp_jump_voltage_and_speed(*run, *each) for each in enumerate(jumps)]
+                    for run in runs
+                ]
+            )
         return {"jumps": np.array(rows), "decided": np.array(decided), "shown": np.array(shown)}
 
     def dataset(self, table: Table) -> xr.Dataset:
@@ -116,11 +121,13 @@ class JumpVoltagesJob(Job):
         return xr.Dataset(variables, coordinates, {"title": "Jump voltages of the weak drive"})
 
 
-def shown_jump(job: CoupleJob, table: Table, down: int, jump: Jump | None) -> list[float]:
+def ramp_jump_voltage_and_speed(
+    job: CoupleJob, table: Table, down: int, jump: Jump | None
+) -> list[float]:
     """Return voltage and speed before at which a ramp shows a jump, with NaN where it does not."""
     if jump is None:
         return [math.nan] * len(SHOWN)
-    before, half, _ = RampRecord(job, table, not down).rows_shown(*jump[1:])
+    before, half, _ = RampRecord(job, table, not down).rows_of_jump(*jump[1:])
     rows = np.arange(len(table["time"]))
     at = zip((half, before), SHOWN, strict=True)
     return [float(np.interp(row, rows, table[name])) for row, name in at]
@@ -209,6 +216,6 @@ def jump_voltages(
     if over not in (None, *IGNORED):
         expected = f"expected {' or '.join(IGNORED)}, which the bonded structure ignores"
         raise InputError(f"over = {over!r}: {expected}")
-    varied = check_parameter_values(over, values, System(structure, drive))
+    varied = checked_parameter_values(over, values, System(structure, drive))
     job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme, over or "", varied)
     return compute_dataset(job, running, finder(running))

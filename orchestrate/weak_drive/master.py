@@ -55,7 +55,7 @@ class Scheme:
         checked_range("step", self.h, "s", low=0.0, open_low=True)
         checked_range("tolerance", self.tolerance, "(0 leaves steps as they are)", low=0.0)
 
-    def most_rows(self, intervals: int) -> int:
+    def max_rows(self, intervals: int) -> int:
         halves = self.tolerance or self.halves_discarded
         return intervals << self.halvings if halves else intervals
 
@@ -79,7 +79,7 @@ class Side(ctypes.Structure):
     ]
 
     @classmethod
-    def of(cls, channel: Channel, impacts: Sequence[str] = ()) -> Side:
+    def from_channel(cls, channel: Channel, impacts: Sequence[str] = ()) -> Side:
         """Describe the instance of a channel; the channel frees the state that is kept."""
         instance = channel.instance
         fmi = Fmi.from_instance(instance)
@@ -98,7 +98,7 @@ class Links(ctypes.Structure):
     _fields_ = [("count", c_int), ("places", c_int * 4), ("scales", c_double * 4)]
 
     @classmethod
-    def of(cls, links: Sequence[tuple[int, Link]]) -> Links:
+    def from_numbered(cls, links: Sequence[tuple[int, Link]]) -> Links:
         places, scales = (c_int * 4)(*(i for i, _ in links)), (one.scale for _, one in links)
         return cls(len(links), places, (c_double * 4)(*scales))
 
@@ -124,7 +124,7 @@ class Pair(ctypes.Structure):
 
 
 @functools.cache
-def couple_loop() -> Any:
+def load_couple_loop() -> Any:
     library = loaded_loop("couple")
     sizes = (c_uint * 4).in_dll(library, "sizes_of_couple")
     assert [*sizes] == [ctypes.sizeof(Pair), MOTION, DRIVE, END + MOTOR.outputs.index("angle")]
@@ -152,10 +152,10 @@ class DriveSide:
         """Return what is connected: the force on the box, its motion, and forces on halves."""
         return self.forces, self.motions, self.pushes
 
-    def put(self, force: Sequence[float], inputs: Sequence[float]) -> None:
+    def set_inputs(self, force: Sequence[float], inputs: Sequence[float]) -> None:
         self.channel.put(*(force[i] / link.scale for i, link in self.forces), *inputs)
 
-    def get(self) -> list[float]:
+    def read_outputs(self) -> list[float]:
         """Return the box's motion, NaN for what is not connected, forces, and other outputs."""
         values = self.channel.get()
         box = [math.nan] * len(BOX)
@@ -178,7 +178,7 @@ class Master:
         inverse_mass: float = 0.0,
     ) -> None:
         """Begin a run; ``inverse_mass`` (1/kg) is of a drive that takes a held force only."""
-        pushes = connection.pushes
+        pushes = connection.connected_pushes
         cubics = (*(name for push in pushes for name in CUBICS[push]),)
         self.oscillator = Channel(oscillator, (*CUBIC, *cubics), OscillatorOutputs._fields)
         self.drive, self.scheme = DriveSide(drive, connection), scheme
@@ -186,16 +186,19 @@ class Master:
         then = (*(f"{name}_then" for name in cubics),)
         self.names = (*LEADING, *pushes, *connection.outputs, *then, *connection.inputs)
         self.inputs = slice(len(self.names) - len(connection.inputs), len(self.names))
-        self.pair, holds_force = self._described(), len(self.drive.forces) < len(FORCE)
+        self.pair, holds_force = self._make_pair(), len(self.drive.forces) < len(FORCE)
         self.inverse_mass = inverse_mass if holds_force else 0.0
-        self.begin()
+        self.reset()
 
-    def begin(self) -> None:
+    def reset(self) -> None:
+        """Begin anew at the state that both instances are in."""
         unknown = [math.nan] * len(self.connection.inputs)
         step, motion = [0.0] * (MOTION - TIME), self.oscillator.get()
-        self.drive.put((motion[FORCE_PLACE], 0.0, 0.0, 0.0), ())  # its acceleration follows it
-        then = [0.0] * (4 * len(self.connection.pushes))
-        self.row = [*step, *motion, *self.drive.get(), *then, *unknown]
+        self.drive.set_inputs(
+            (motion[FORCE_PLACE], 0.0, 0.0, 0.0), ()
+        )  # its acceleration follows it
+        then = [0.0] * (4 * len(self.connection.connected_pushes))
+        self.row = [*step, *motion, *self.drive.read_outputs(), *then, *unknown]
         for name, count in MEMORY.items():
             getattr(self.pair, name)[:] = [self.inverse_mass * (name == "inverse_mass")] * count
         self.pair.point_count = 0
@@ -220,8 +223,8 @@ class Master:
     def run(self, inputs: ArrayLike, h: float | None = None) -> Record:
         """Run an interval for each row of the drive's inputs, held constant; return the record."""
         values = np.ascontiguousarray(inputs, dtype=float)
-        rows = values.reshape(len(values), self.width)
-        size = 1 if self._reads_itself else max(1, len(rows))
+        rows = values.reshape(len(values), self.input_width)
+        size = 1 if self._reads_recorded_in_python else max(1, len(rows))
         pieces = (rows[i : i + size] for i in range(0, len(rows), size))
         return self._run_pieces(pieces, len(rows), h)
 
@@ -235,7 +238,7 @@ class Master:
         self, pieces: Iterable[NDArray[np.float64]], count: int, h: float | None
     ) -> Record:
         now, width = np.array(self.row), len(self.row)
-        rows = np.empty((1 + self.scheme.most_rows(count), width))
+        rows = np.empty((1 + self.scheme.max_rows(count), width))
         rows[0], ends, at, intervals = self.row, np.zeros(count, dtype=np.intc), 0, 0
         recorded = np.empty((count, len(self.connection.recorded)))
         self.pair.table = recorded.ctypes.data
@@ -244,56 +247,58 @@ class Master:
             self.drive.channel.begin()
             buffers = (now, rows[at:], ends[intervals:], values)
             addresses = (one.ctypes.data for one in buffers)
-            done = couple_loop()(byref(self.pair), *addresses, len(values), h or self.scheme.h)
+            done = load_couple_loop()(byref(self.pair), *addresses, len(values), h or self.scheme.h)
             self.row = now.tolist()
-            self._check()
+            self._check_answers()
             ends[intervals : intervals + done] += at
-            if done and self._reads_itself:
+            if done and self._reads_recorded_in_python:
                 own = len(self.connection.inputs)
-                recorded[intervals] = self.recorded(values[0, own:].tolist())
+                recorded[intervals] = self.read_recorded(values[0, own:].tolist())
             intervals += done
             at = int(ends[intervals - 1]) if intervals else 0
-            if done < len(values) or self.ended:
+            if done < len(values) or self.end_reason:
                 break
-        return Record.of_rows(self.names, rows[: at + 1], ends[:intervals], recorded[:intervals])
+        return Record.from_rows(self.names, rows[: at + 1], ends[:intervals], recorded[:intervals])
 
     @functools.cached_property
-    def _reads_itself(self) -> bool:
+    def _reads_recorded_in_python(self) -> bool:
         """Whether something is recorded that is no real number: the loop does not read that."""
         kinds = (self.drive.instance.variable(n).type for n in self.connection.recorded)
         return not all(kind in REAL_TYPES for kind in kinds)
 
     @property
-    def ended(self) -> str:
+    def end_reason(self) -> str:
         """Return at what time, and why, an FMU ended the simulation; empty if none did."""
         return self.drive.channel.ended or self.oscillator.ended
 
     @property
-    def width(self) -> int:
+    def input_width(self) -> int:
         """Return how many inputs of the drive a row of :meth:`run` has."""
         return len(self.connection.inputs) * (2 if self.connection.recorded else 1)
 
-    def recorded(self, inputs: Sequence[float]) -> list[float]:
-        self.drive.put((self.row[MOTION + FORCE_PLACE], 0.0, 0.0, 0.0), inputs)
+    def read_recorded(self, inputs: Sequence[float]) -> list[float]:
+        self.drive.set_inputs((self.row[MOTION + FORCE_PLACE], 0.0, 0.0, 0.0), inputs)
         return [float(value) for value in self.drive.instance.get(*self.connection.recorded)]
 
-    def _described(self) -> Pair:
+    def _make_pair(self) -> Pair:
         connection, drive = self.connection, self.drive
-        pair = Pair(Side.of(self.oscillator, ["impact_count"]), Side.of(drive.channel))
+        pair = Pair(
+            Side.from_channel(self.oscillator, ["impact_count"]), Side.from_channel(drive.channel)
+        )
         for name in ("tolerance", "easy", "halvings"):
             setattr(pair, name, getattr(self.scheme, name))
         goes_back = drive.instance.description.has_states
         pair.first_passes = self.scheme.first_passes if goes_back else 1
         pair.halves_discarded = self.scheme.halves_discarded and goes_back
         for name, links in zip(("force", "motion", "pushes"), drive.links, strict=True):
-            setattr(pair, name, Links.of(links))
-        names = () if self._reads_itself else connection.recorded
+            setattr(pair, name, Links.from_numbered(links))
+        names = () if self._reads_recorded_in_python else connection.recorded
         pair.cubic, pair.recorded = connection.cubic, references(drive.instance, names)
-        pair.recorded_count, pair.stride = len(names), self.width
+        pair.recorded_count, pair.stride = len(names), self.input_width
         pair.scratch = (c_double * (2 * pair.drive.input_count))()
         return pair
 
-    def _check(self) -> None:
+    def _check_answers(self) -> None:
         """Raise what ended the run, keep warnings; an FMU that ended the simulation is no error."""
         sides = (
             (self.oscillator, self.pair.oscillator.fmi),

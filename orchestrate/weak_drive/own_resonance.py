@@ -32,14 +32,14 @@ def elastic_resonance(structure: Structure, drive: Drive) -> float:
     """Compute the undamped resonance speed with one elastic impact a revolution."""
     from scipy.optimize import brentq
 
-    w, n = free_modes(structure, drive)
+    w, n = free_frequencies_and_gap_changes(structure, drive)
 
     def gap_at_impact(Omega: float) -> float:
         return float((n**2 / (w * np.tan(w * np.pi / Omega))).sum())
 
     poles = (w[:, np.newaxis] / np.arange(1, 1 + int(w[-1] / w[-2]))).ravel()
     poles = np.unique(poles[(poles >= w[-2]) & (poles <= w[-1])])
-    bonded, roots = averaged.resonance(structure, drive), []
+    bonded, roots = averaged.bonded_resonance(structure, drive), []
     for low, high in pairwise(poles.tolist()):
         ends = low * (1.0 + 1e-9), high * (1.0 - 1e-9)  # not at the poles themselves
         if gap_at_impact(ends[0]) < 0.0 < gap_at_impact(ends[1]):
@@ -49,7 +49,9 @@ def elastic_resonance(structure: Structure, drive: Drive) -> float:
     return min(roots, key=lambda root: abs(root - bonded), default=bonded)
 
 
-def free_modes(structure: Structure, drive: Drive) -> tuple[np.ndarray, np.ndarray]:
+def free_frequencies_and_gap_changes(
+    structure: Structure, drive: Drive
+) -> tuple[np.ndarray, np.ndarray]:
     """Compute the natural frequencies without contact, and each mode's change of gap."""
     from scipy.linalg import eigh
 
@@ -68,30 +70,32 @@ def gap_stays_open(w: np.ndarray, n: np.ndarray, Omega: float) -> bool:
     return bool((gaps > 0.0).all() or (gaps < 0.0).all())
 
 
-def resonance(structure: Structure, drive: Drive) -> float:
+def resonance_speed(structure: Structure, drive: Drive) -> float:
     """Return the resonance speed of the structure as given, over omega."""
     # the bonded one's, unless its own is away by more than half the distance of the bonded folds
     # and half the width of its resonance
-    return averaged.resonance(structure, drive) + resolved_resonance_shift(structure, drive)
+    return averaged.bonded_resonance(structure, drive) + resolved_resonance_shift(structure, drive)
 
 
-def resonances(structure: Structure, drive: Drive) -> tuple[float, float]:
+def lower_and_higher_resonance(structure: Structure, drive: Drive) -> tuple[float, float]:
     """Return the lower and the higher of the bonded and delaminated resonance speeds."""
     both = (structure.as_bonded(), structure.as_delaminated())
-    low, high = sorted(resonance(kind, drive) for kind in both)
+    low, high = sorted(resonance_speed(kind, drive) for kind in both)
     return low, high
 
 
 def dividing_speed(structure: Structure, drive: Drive) -> float:
     """Return the speed over omega that divides motions below and beyond resonance."""
-    return averaged.dividing_speed(structure, drive) + resolved_resonance_shift(structure, drive)
+    return averaged.bonded_dividing_speed(structure, drive) + resolved_resonance_shift(
+        structure, drive
+    )
 
 
 def resonance_shift(structure: Structure, drive: Drive) -> float:
     """Return the structure's resonance speed minus the bonded one, over omega."""
     if structure.bonded:
         return 0.0
-    return elastic_resonance(structure, drive) - averaged.resonance(structure, drive)
+    return elastic_resonance(structure, drive) - averaged.bonded_resonance(structure, drive)
 
 
 def resolved_resonance_shift(structure: Structure, drive: Drive) -> float:

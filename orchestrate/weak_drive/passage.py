@@ -58,9 +58,9 @@ class PassageJob(couple.CoupleJob):
 
     item_columns: ClassVar[tuple[str, ...]] = tuple(KEPT + name for name in SAMPLES)
 
-    def kept_table(self, run: MotorRun, steps: range) -> Table:
-        record = run.record(steps)
-        revolutions, energies = run.revolutions.add(record)
+    def run_and_keep(self, run: MotorRun, steps: range) -> Table:
+        record = run.run_steps(steps)
+        revolutions, energies = run.revolutions.add_record(record)
         own = energies._asdict()
         every = ((own[name] if name in own else record[name])[record.ends] for name in SAMPLES)
         return {**revolutions, **{KEPT + n: one for n, one in zip(SAMPLES, every, strict=True)}}
@@ -68,7 +68,7 @@ class PassageJob(couple.CoupleJob):
     def dataset(self, table: Table) -> xr.Dataset:
         revolutions = super().dataset(table)
         samples = {name: table[KEPT + name] for name in SAMPLES}
-        centres, what = self.sample_centres(revolutions)
+        centres, what = self.sample_centres_and_description(revolutions)
         away = np.abs(samples["time"][:, np.newaxis] - centres).min(axis=1, initial=math.inf)
         span = math.inf if self.around is None else (1.0 + 1e-9) * self.around
         kept = np.flatnonzero(away <= span)
@@ -82,7 +82,7 @@ class PassageJob(couple.CoupleJob):
             variables, time, {**revolutions.attrs, "title": title, "kept": what}
         ).merge(of_jumps)
 
-    def sample_centres(self, revolutions: xr.Dataset) -> tuple[np.ndarray, str]:
+    def sample_centres_and_description(self, revolutions: xr.Dataset) -> tuple[np.ndarray, str]:
         """Return the times around which samples are kept, s, and a text on them."""
         jumps = revolutions.jump_time.values
         passed = float(revolutions.passage_time)
@@ -157,7 +157,7 @@ def passage(
     settings = (duration, rate, settle, 0.0, back, spin_up)
     schedule = couple.schedule_from_arguments(structure, drive, voltage, *settings)
     scheme = couple.scheme_from_arguments(structure, step, sampled=True)
-    run = couple.couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
+    run = couple.make_couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
     fields = {**vars(run), "name": run.name.replace("couple", "passage"), "around": around}
     return compute_dataset(PassageJob(**fields), running, finder(running))
 
@@ -204,7 +204,7 @@ def waterfall(
     >>> float(strongest)
     1.0
     """
-    check_spectra(found, mass, revolutions, highest)
+    check_waterfall_arguments(found, mass, revolutions, highest)
     points = max(16, math.ceil(4.0 * highest))
     from scipy.interpolate import CubicHermiteSpline
 
@@ -241,7 +241,7 @@ def waterfall(
     return xr.Dataset(variables, coordinates, {"title": "Spectra over the motor's revolutions"})
 
 
-def check_spectra(data: Any, mass: int, revolutions: int, highest: float) -> None:
+def check_waterfall_arguments(data: Any, mass: int, revolutions: int, highest: float) -> None:
     checked_integer("mass", mass, 1, 2)
     checked_integer("revolutions", revolutions, 1)
     checked_range("highest", highest, "times the speed", low=0.0, open_low=True)

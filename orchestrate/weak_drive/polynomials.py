@@ -18,18 +18,19 @@ from ..fmu.c_library import loaded_loop
 Cubic = tuple[Any, ...]  # four: value and first to third time derivative at a step's beginning
 
 
-def matched_cubics(*given: Any) -> NDArray[np.float64]:
+def matched_cubics(first: Any, last: Any, mean: Any, moment: Any, h: Any) -> NDArray[np.float64]:
     """Return the cubics, a row each, of end values, means, first moments and lengths of steps."""
-    return cubics_by("matched_cubics", given)
+    return call_cubic_function("matched_cubics", (first, last, mean, moment, h))
 
 
 def end_derivatives(cubic: Cubic, h: Any) -> Cubic:
-    return tuple(np.moveaxis(cubics_by("continued_cubics", (*cubic, h)), -1, 0))
+    """Return value and derivatives of a cubic at the end of its step."""
+    return tuple(np.moveaxis(call_cubic_function("continued_cubics", (*cubic, h)), -1, 0))
 
 
-def cubics_by(name: str, given: Sequence[Any]) -> NDArray[np.float64]:
+def call_cubic_function(name: str, numbers: Sequence[Any]) -> NDArray[np.float64]:
     """Return the cubics that a function of the compiled loop makes of five numbers each."""
-    rows = np.ascontiguousarray(np.stack(np.broadcast_arrays(*given), axis=-1), dtype=float)
+    rows = np.ascontiguousarray(np.stack(np.broadcast_arrays(*numbers), axis=-1), dtype=float)
     found = np.empty((*rows.shape[:-1], 4))
     tables = (c_void_p(rows.ctypes.data), rows.size // 5, c_void_p(found.ctypes.data))
     getattr(loaded_loop("couple"), name)(*tables)

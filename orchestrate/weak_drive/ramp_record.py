@@ -38,33 +38,35 @@ class RampRecord:
         return sense_of_rotation(self.table["voltage"])
 
     @property
-    def sign(self) -> float:
+    def direction(self) -> float:
         """Return the direction of the voltage's size: 1 or -1."""
         return 1.0 if self.up else -1.0
 
-    def forward(self) -> Table:
+    def forward_table(self) -> Table:
         """Return the table of the mirror image of the run, in which the motor turns forward."""
         signed = ("voltage", "speed")
         return {**self.table, **{name: self.sense * self.table[name] for name in signed}}
 
-    def rows(self) -> np.ndarray:
+    def ramp_rows(self) -> np.ndarray:
         """Return the rows of the revolutions in which the size of the voltage rises (or falls)."""
         voltage = self.sense * self.table["voltage"]
-        trend = self.sense * self.sign * self.job.schedule.trend(self.table["time"])
+        trend = self.sense * self.direction * self.job.schedule.trend(self.table["time"])
         return np.flatnonzero((trend > 0.0) & (voltage > 0.0))
 
     def legs(self) -> list[np.ndarray]:
-        rows = self.rows()
+        rows = self.ramp_rows()
         return np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1) if rows.size else []
 
     def eta0(self, rows: Any) -> Any:
         """Return the voltage over K omega at the ends of revolutions."""
         return self.sense * self.table["voltage"][rows] / self.job.drive.volts(self.job.structure)
 
-    def step(self, row: int) -> int:
-        return min(math.ceil(self.table["time"][row] / self.job.scheme.h), self.job.steps() - 1)
+    def step_of_row(self, row: int) -> int:
+        return min(
+            math.ceil(self.table["time"][row] / self.job.scheme.h), self.job.step_count() - 1
+        )
 
-    def rows_shown(self, low: float, high: float, before: float, after: float) -> list[float]:
+    def rows_of_jump(self, low: float, high: float, before: float, after: float) -> list[float]:
         """Return the rows at which a jump begins, is half done and ends; NaN where it does not."""
         # the jump is from a voltage and the speed before to another one and the speed after
         first, fall = low - before, (low - before) - (high - after)
@@ -72,7 +74,7 @@ class RampRecord:
             turn = np.median(np.diff(self.table["time"][leg])) if len(leg) > 1 else math.inf
             b, omega = self.job.drive.b(self.job.structure), self.job.structure.omega
             width = max(4, math.ceil(SMOOTH / (b * omega * turn)))
-            past = self.sign * self.eta0(leg) >= self.sign * low
+            past = self.direction * self.eta0(leg) >= self.direction * low
             slips = self.eta0(leg) - np.abs(self.table["speed"][leg]) / omega
             if not past.any() or len(leg) < width:
                 continue
@@ -90,7 +92,7 @@ class RampRecord:
         return [math.nan] * len(DONE)
 
 
-def time_beyond(time: np.ndarray, Omega: np.ndarray, threshold: float) -> float:
+def time_stays_above(time: np.ndarray, Omega: np.ndarray, threshold: float) -> float:
     """Return the time from which the speed stays above a threshold; NaN if it does not."""
     below = np.flatnonzero(Omega <= threshold)
     if not len(Omega) or Omega[-1] <= threshold:
@@ -108,7 +110,7 @@ def jump_labels(directions: Sequence[str]) -> list[str]:
     return labels
 
 
-def variables_shown(table: Table, shown: Sequence[Sequence[float]]) -> dict[str, Variable]:
+def ramp_jump_variables(table: Table, shown: Sequence[Sequence[float]]) -> dict[str, Variable]:
     """Build the variables of what a record shows at jumps; NaN where a row is NaN."""
     rows = np.array(shown, dtype=float).reshape(-1, len(DONE)).T
     numbers = np.arange(len(table["time"]))

@@ -12,7 +12,7 @@ from ..fmu.c_library import loaded_loop
 from ..model.structure import Structure
 from ..running.job import Table
 from .energy_balance import Energies, EnergyBalance
-from .extremes import range_of_box, range_of_mass
+from .extremes import range_of_box, range_of_mass_1
 from .step_record import Floats, Record
 
 COLUMNS = {
@@ -50,26 +50,26 @@ class Revolutions:
         # largest since: x1, -x1, position of the box, its negative, and its acceleration's size
         self.largest = np.full(5, NOTHING)
 
-    def add(self, record: Record) -> tuple[Table, Energies]:
-        energies = self.balance.add(record)
-        of_mass, of_box = range_of_mass(self.structure, record), range_of_box(record)
+    def add_record(self, record: Record) -> tuple[Table, Energies]:
+        energies = self.balance.add_record(record)
+        of_mass, of_box = range_of_mass_1(self.structure, record), range_of_box(record)
         shaken = np.abs(record.after["box_acceleration"])
         largest = np.stack([of_mass.high, -of_mass.low, of_box.high, -of_box.low, shaken])
         voltage, x1, y = record["voltage"], record["x1"], record["box_position"]
         rows, begin = [], 0
-        for place, time, speed, impacts in self.completed(record).tolist():
+        for place, time, speed, impacts in self.complete_revolutions(record).tolist():
             end = int(place)
-            self._widen(largest[:, begin:end])
+            self._raise_largest(largest[:, begin:end])
             x_high, x_low, y_high, y_low, acceleration = self.largest.tolist()
             ranges = 0.5 * (x_high + x_low), 0.5 * (y_high + y_low)
             row = (time, voltage[end], speed, *ranges, impacts, acceleration)
             rows.append((*row, *(account[end] for account in energies)))
             self.largest, begin = np.array([x1[end], -x1[end], y[end], -y[end], 0.0]), end
-        self._widen(largest[:, begin:])
+        self._raise_largest(largest[:, begin:])
         table = np.array(rows, dtype=float).reshape(-1, len(COLUMNS))
         return dict(zip(COLUMNS, table.T.copy(), strict=True)), energies
 
-    def completed(self, record: Record) -> Floats:
+    def complete_revolutions(self, record: Record) -> Floats:
         """Return where a record completes revolutions: place, time, mean speed, and impacts."""
         table, ends = record.columns, record.ends.astype(np.intc)
         found = np.empty((len(ends), 4))
@@ -80,7 +80,7 @@ class Revolutions:
         find = loaded_loop("couple").find_revolutions
         return found[: find(values, along, across, places, len(ends), last, rows)]
 
-    def _widen(self, largest: Floats) -> None:
+    def _raise_largest(self, largest: Floats) -> None:
         self.largest = np.maximum(self.largest, largest.max(axis=1, initial=NOTHING))
 
     def get_state(self) -> list[float]:

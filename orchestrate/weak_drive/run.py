@@ -33,13 +33,13 @@ STATE, MEMORY = "_state", "_memory"  # ends of the columns of a run's state
 END = b"."  # of an FMU's state in an array, which loses zeros at its end
 
 
-def oscillator_start(structure: Structure) -> dict[str, float | bool]:
+def oscillator_start_values(structure: Structure) -> dict[str, float | bool]:
     """Return the structure FMU's start values, its own box excitation turned off."""
     off = {"box_amplitude": 0.0, "box_frequency": 0.0, "x_rel_max_on": False}
     return {**structure.parameters(), **off}
 
 
-def state_rows(table: Table, rows: slice) -> Table:
+def select_state(table: Table, rows: slice) -> Table:
     return {name: table[name][rows] for name in table if name.endswith((STATE, MEMORY))}
 
 
@@ -55,8 +55,8 @@ class Run:
         if not self.drive.description.saves_states:
             self._saved = {}
 
-    def record(self, steps: range) -> Record:
-        return self.inputs.run(self.master, steps, self.master.scheme.h)
+    def run_steps(self, steps: range) -> Record:
+        return self.inputs.run_master(self.master, steps, self.master.scheme.h)
 
     def close(self) -> None:
         self.master.close()
@@ -85,7 +85,7 @@ class CoupledJob(Job, ABC):
     item: ClassVar[str] = "step"
 
     @abstractmethod
-    def steps(self) -> int:
+    def step_count(self) -> int:
         """Return the number of communication steps of the run."""
 
     @abstractmethod
@@ -93,20 +93,20 @@ class CoupledJob(Job, ABC):
         """Do some steps from the end of the chunk before; return what they leave, and a state."""
 
     @abstractmethod
-    def conclude(self, fmus: Fmus, table: Table) -> Table:
+    def compute_from_all_steps(self, fmus: Fmus, table: Table) -> Table:
         """Compute what follows from all steps."""
 
     def count(self) -> int:
-        return self.steps() + 1
+        return self.step_count() + 1
 
     def items(self) -> Sequence[int]:
         return range(self.count())
 
     def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
-        if items[0] < self.steps():
+        if items[0] < self.step_count():
             return self.advance(fmus, range(items[0], items[-1] + 1), previous)
         assert previous is not None
-        return self.conclude(fmus, previous)
+        return self.compute_from_all_steps(fmus, previous)
 
 
 @dataclass(frozen=True)
@@ -125,18 +125,18 @@ class MotorJob(CoupledJob):
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, MOTOR_SHAKER)
 
-    def steps(self) -> int:
+    def step_count(self) -> int:
         return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)
 
     def advance(self, fmus: Fmus, steps: range, previous: Table | None) -> Table:
-        with begin_run(self, fmus) as run:
+        with open_motor_run(self, fmus) as run:
             if previous is not None:
                 run.set_state(previous)
-            return {**self.kept_table(run, steps), **run.get_state()}
+            return {**self.run_and_keep(run, steps), **run.get_state()}
 
-    def kept_table(self, run: MotorRun, steps: range) -> Table:
+    def run_and_keep(self, run: MotorRun, steps: range) -> Table:
         """Run some communication steps; return what is kept of them: the revolutions."""
-        return run.revolve(steps)
+        return run.run_steps_by_revolution(steps)
 
 
 class MotorRun(Run):
@@ -144,7 +144,7 @@ class MotorRun(Run):
 
     def __init__(self, job: MotorJob, oscillator: Instance, shaker: Instance) -> None:
         self.job, self.revolutions = job, Revolutions(job.structure)
-        oscillator.initialize(**oscillator_start(job.structure))
+        oscillator.initialize(**oscillator_start_values(job.structure))
         voltage: Input = job.schedule.course
         if job.control:
             voltage = Supply(job.schedule.course, job.control, job.speed_start)
@@ -154,22 +154,22 @@ class MotorRun(Run):
         master, balance = Master(oscillator, shaker, job.scheme), self.revolutions.balance
         super().__init__(master, inputs, balance=balance, revolution=self.revolutions)
 
-    def record(self, steps: range) -> Record:
-        record = super().record(steps)
-        if self.master.ended:  # our own drives do not
-            raise FmuError(self.master.ended)
+    def run_steps(self, steps: range) -> Record:
+        record = super().run_steps(steps)
+        if self.master.end_reason:  # our own drives do not
+            raise FmuError(self.master.end_reason)
         return record
 
-    def revolve(self, steps: range) -> Table:
-        return self.revolutions.add(self.record(steps))[0]
+    def run_steps_by_revolution(self, steps: range) -> Table:
+        return self.revolutions.add_record(self.run_steps(steps))[0]
 
-    def speeds(self, steps: range) -> np.ndarray:
+    def run_steps_for_speeds(self, steps: range) -> np.ndarray:
         """Run some steps; return only the mean speeds of completed revolutions, rad/s."""
-        return self.revolutions.completed(self.record(steps))[:, 2]
+        return self.revolutions.complete_revolutions(self.run_steps(steps))[:, 2]
 
 
 @contextmanager
-def motor_runs(fmus: Fmus) -> Iterator[Callable[[MotorJob], MotorRun]]:
+def motor_run_starter(fmus: Fmus) -> Iterator[Callable[[MotorJob], MotorRun]]:
     """Create both FMU instances; give what resets them and starts a run, one after the other."""
     with (
         Instance(fmus[OSCILLATOR], "oscillator") as oscillator,
@@ -185,6 +185,6 @@ def motor_runs(fmus: Fmus) -> Iterator[Callable[[MotorJob], MotorRun]]:
 
 
 @contextmanager
-def begin_run(job: MotorJob, fmus: Fmus) -> Iterator[MotorRun]:
-    with motor_runs(fmus) as start, closing(start(job)) as run:
+def open_motor_run(job: MotorJob, fmus: Fmus) -> Iterator[MotorRun]:
+    with motor_run_starter(fmus) as start, closing(start(job)) as run:
         yield run

@@ -91,32 +91,32 @@ class Ramp(Schedule):
         checked_range("increment", self.increment, "V", low=0.0, high=abs(self.last - self.first))
 
     @property
-    def begin(self) -> float:
+    def ramp_start(self) -> float:
         return self.spin_up + self.settle
 
     @property
-    def rise(self) -> float:
+    def rise_time(self) -> float:
         """Return the time from one end of the ramp to the other, s."""
         return abs(self.last - self.first) / self.rate
 
     @property
-    def turn(self) -> float:
+    def turn_time(self) -> float:
         """Return the time at which the ramp reaches the last voltage, s."""
-        return self.begin + self.rise
+        return self.ramp_start + self.rise_time
 
     @cached_property
     def course(self) -> Course:
         height = abs(self.last - self.first)
         count = math.floor(height / self.increment + 1e-9) if self.increment else 0
         levels = np.minimum(self.increment * np.arange(count + 1), height) if count else [0.0]
-        nodes = [(self.begin, 0.0)]
+        nodes = [(self.ramp_start, 0.0)]
         for below, level in pairwise(levels):
-            nodes += [(self.begin + level / self.rate, each) for each in (below, level)]
-        nodes += [(self.turn, levels[-1] if self.increment else height)]
+            nodes += [(self.ramp_start + level / self.rate, each) for each in (below, level)]
+        nodes += [(self.turn_time, levels[-1] if self.increment else height)]
         back = [height, *levels[::-1]] if self.back else []
-        nodes += [(self.turn, level) for level in back[:1]]
+        nodes += [(self.turn_time, level) for level in back[:1]]
         for level, below in pairwise(back):
-            time = self.turn + (height - below) / self.rate
+            time = self.turn_time + (height - below) / self.rate
             nodes += [(time, level if self.increment else below), (time, below)]
         sign = math.copysign(1.0, self.last - self.first)
         times, changes = zip(*nodes, strict=True)
@@ -126,7 +126,7 @@ class Ramp(Schedule):
 
     def trend(self, times: np.ndarray) -> np.ndarray:
         times, there = np.asarray(times), 1 if self.last > self.first else -1
-        return np.where(times > self.turn, -there, np.where(times > self.begin, there, 0))
+        return np.where(times > self.turn_time, -there, np.where(times > self.ramp_start, there, 0))
 
 
 @dataclass(frozen=True)
@@ -208,7 +208,7 @@ class Course(Schedule):
         low, high = self.voltages[last - 1], self.voltages[last]
         return low + (high - low) * (time - begin) / (end - begin)
 
-    def over_steps(self, edges: np.ndarray) -> tuple[np.ndarray, ...]:
+    def ends_means_and_moments(self, edges: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return end values, means, moments of steps; a jump at an edge is of the one after."""
         known, values = np.array(self.times), np.array(self.voltages)
         inner = known[(known > edges[0]) & (known < edges[-1])]

@@ -20,9 +20,9 @@ from ..fmu.instance import Instance
 from ..model.drive import Drive
 from ..model.structure import Structure
 from .connection import MOTOR
-from .extremes import range_of_mass
+from .extremes import range_of_mass_1
 from .master import Master, Scheme
-from .run import oscillator_start
+from .run import oscillator_start_values
 from .step_record import LEADING, Record
 
 # start values of the structure and of the motor, in the order of the unknowns
@@ -79,17 +79,17 @@ class Shooter:
         length: float,
     ) -> None:
         self.fmus, self.structure = fmus, structure
-        self.halves = oscillator_start(structure)
-        self.take_drive(drive)
+        self.halves = oscillator_start_values(structure)
+        self.set_drive(drive)
         self.turns, self.count, self.angle = revolutions, revolutions * steps, 0.0
         self.master: Master | None = None  # of both FMUs, from the first start on
         self.volts, self.length = drive.volts(structure), length
-        self.begin_together(structure.bonded)
+        self.set_start_contact(structure.bonded)
 
-    def take_drive(self, drive: Drive) -> None:
+    def set_drive(self, drive: Drive) -> None:
         self.drive, self.parameters = drive, drive.parameters()
 
-    def begin_together(self, together: bool) -> None:
+    def set_start_contact(self, together: bool) -> None:
         self.together = together
         structure, drive, length = self.structure, self.drive, self.length
         omega = structure.omega
@@ -108,17 +108,17 @@ class Shooter:
         self.matrix: Floats = np.empty((0, 0))
         self._last: tuple[Floats, Floats] | None = None
 
-    def repeat_after(self, revolutions: int) -> None:
+    def set_revolutions(self, revolutions: int) -> None:
         self.turns, self.count = revolutions, self.count // self.turns * revolutions
         self.matrix, self._last = np.empty((0, 0)), None
 
-    def change_in(self, unknowns: Floats, revolutions: int) -> Floats:
+    def state_change_after(self, unknowns: Floats, revolutions: int) -> Floats:
         turns, matrix, last = self.turns, self.matrix, self._last
-        self.repeat_after(revolutions)
+        self.set_revolutions(revolutions)
         try:
             return self.shoot(unknowns).end[: self.size] - unknowns[: self.size]
         finally:
-            self.repeat_after(turns)
+            self.set_revolutions(turns)
             self.matrix, self._last = matrix, last
 
     # -- both FMUs over a period --
@@ -138,7 +138,7 @@ class Shooter:
             self.master = Master(oscillator, shaker, Scheme(h))
         else:
             self.master.scheme = Scheme(h)
-            self.master.begin()
+            self.master.reset()
         return self.master
 
     def close(self) -> None:
@@ -157,13 +157,13 @@ class Shooter:
             values += self.fmus[1].get("motor_current")
         return np.array(values) / self.units
 
-    def settle(self, voltage: float, speed: float, time: float) -> Floats:
+    def simulate_at_speed(self, voltage: float, speed: float, time: float) -> Floats:
         """Simulate for a time at a nearly fixed speed (heavy rotor); return the state."""
-        self.begin_together(self.structure.bonded)
+        self.set_start_contact(self.structure.bonded)
         longest = time + (self.turns + 1) * TURN / speed
         own_drive = self.drive
         # a rotor that keeps its speed
-        self.take_drive(own_drive.replace(rotor_inertia=1e6 * own_drive.rotor_inertia))
+        self.set_drive(own_drive.replace(rotor_inertia=1e6 * own_drive.rotor_inertia))
         state = np.zeros(self.size)
         state[self.names.index("speed")] = speed / self.structure.omega
         if "motor_current" in self.names:
@@ -172,19 +172,19 @@ class Shooter:
         try:
             master = self.start_master(state, voltage, 0.1 / self.structure.omega)
             master.run(np.full(max(0, round(time / master.scheme.h) - 1), voltage))
-            while master.time < time or (self._touching(master) and master.time < longest):
+            while master.time < time or (self._in_contact(master) and master.time < longest):
                 master.step(voltage)
             if self.structure.preload > 0.0:  # once more round, to where a period is best begun
                 h = self.turns * TURN / speed / self.count
                 kept = master.run(np.full(self.count, voltage), h=h).after
-                master.run(np.full(1 + self.best_start(kept)[0], voltage), h=h)
+                master.run(np.full(1 + self.find_best_start(kept)[0], voltage), h=h)
         finally:
-            self.take_drive(own_drive)
+            self.set_drive(own_drive)
         self.angle = master["angle"] % TURN
-        self.begin_together(self._touching(master) or self.structure.bonded)
+        self.set_start_contact(self._in_contact(master) or self.structure.bonded)
         return self.scaled_state(master)
 
-    def _touching(self, master: Master) -> bool:
+    def _in_contact(self, master: Master) -> bool:
         return not self.structure.bonded and master.motion.x_rel == 0.0
 
     def shoot(self, unknowns: Floats) -> Shot:
@@ -204,13 +204,13 @@ class Shooter:
         """Simulate one period; return its amplitude, impacts and best start."""
         master, voltage = self.begin_period(unknowns)
         record = master.run(np.full(self.count, voltage))
-        reached = range_of_mass(self.structure, record)
+        reached = range_of_mass_1(self.structure, record)
         amplitude = 0.5 * float(reached.high.max() - reached.low.min())
         return Period(
-            amplitude, int(master["impacts"]), self.turns, *self.best_start(record.before)
+            amplitude, int(master["impacts"]), self.turns, *self.find_best_start(record.before)
         )
 
-    def best_start(self, kept: Record) -> tuple[int, float, bool, bool]:
+    def find_best_start(self, kept: Record) -> tuple[int, float, bool, bool]:
         """Find the step farthest from impacts; return a Period's clear, share, together, sticks."""
         sizes = kept["x_rel"]
         together, sticks = self.together and not sizes.any(), False
@@ -229,12 +229,12 @@ class Shooter:
         share = float(sizes[0] / sizes[clear]) if sizes[clear] > 0.0 else 1.0
         return clear, share, together, sticks
 
-    def begin_later(self, unknowns: Floats, steps: int, together: bool) -> Floats:
+    def shift_start(self, unknowns: Floats, steps: int, together: bool) -> Floats:
         """Shift the period's start by some steps; return the unknowns there."""
         master, voltage = self.begin_period(unknowns)
         master.run(np.full(steps, voltage))
         self.angle = master["angle"] % TURN
-        self.begin_together(together)
+        self.set_start_contact(together)
         return np.append(self.scaled_state(master), unknowns[-2:])
 
     # -- the equations --
@@ -250,7 +250,7 @@ class Shooter:
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
         """Return the Jacobian by differences, or updated by Broyden's secant rule."""
         if at_root or not self.matrix.size:
-            return self.renew_jacobian(unknowns)
+            return self.compute_jacobian(unknowns)
         residual = self.residual(unknowns)
         if self._last is not None:
             change = unknowns - self._last[0]
@@ -261,13 +261,13 @@ class Shooter:
         self._last = unknowns.copy(), residual
         return self.matrix
 
-    def restart(self, root: Floats, matrix: Floats) -> None:
+    def set_root_jacobian(self, root: Floats, matrix: Floats) -> None:
         self.matrix, self._last = matrix, (root, np.zeros(self.size + 1))
 
-    def renew_jacobian(self, unknowns: Floats) -> Floats:
+    def compute_jacobian(self, unknowns: Floats) -> Floats:
         base = self.shoot(unknowns)
         matrix = np.stack(
-            [self.derivative(unknowns, i, base) for i in range(len(unknowns))], axis=1
+            [self.jacobian_column(unknowns, i, base) for i in range(len(unknowns))], axis=1
         )
         matrix[: self.size, : self.size] -= np.eye(self.size)
         self.matrix, residual = matrix, base.end.copy()
@@ -275,7 +275,7 @@ class Shooter:
         self._last = unknowns.copy(), residual
         return self.matrix
 
-    def derivative(self, unknowns: Floats, which: int, base: Shot) -> Floats:
+    def jacobian_column(self, unknowns: Floats, which: int, base: Shot) -> Floats:
         known: dict[float, Shot] = {0.0: base}
 
         def end_state_shifted_by(change: float) -> Floats | None:
@@ -298,10 +298,10 @@ class Shooter:
 
     def multipliers(self) -> np.ndarray:
         # without the angle's own, which is 1 for every motion
-        values = np.linalg.eigvals(self.map_derivative())
+        values = np.linalg.eigvals(self.return_map_derivative())
         return np.asarray(values[np.argsort(-np.abs(values))])
 
-    def map_derivative(self) -> Floats:
+    def return_map_derivative(self) -> Floats:
         count = self.size
         flow = self.matrix[:, :count] + np.eye(count + 1, count)
         drift = self.matrix[:, -1]  # a longer period is a slower mean speed
@@ -309,7 +309,7 @@ class Shooter:
 
     def flip_direction(self) -> Floats:
         """Return the unit eigenvector of the multiplier -1 (period doubling)."""
-        values, vectors = np.linalg.eig(self.map_derivative())
+        values, vectors = np.linalg.eig(self.return_map_derivative())
         direction = vectors[:, np.argmin(np.abs(values + 1.0))].real
         return fix_sign(np.asarray(direction / np.linalg.norm(direction)))
 

@@ -36,7 +36,7 @@ from ..model.structure import Structure
 from ..response.questions import checked_structure
 from .connection import FORCE, MOTION, PUSHES, Link, checked_links, checked_units
 from .cosimulate import checked_parameters
-from .run import oscillator_start
+from .run import oscillator_start_values
 
 NAMESPACES = {
     "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
@@ -72,11 +72,11 @@ Links = Mapping[str, Link]
 REAL = {"1.0": "Real", "2.0": "Float64"}  # types, by the version of SSP
 
 
-def add(parent: ET.Element, tag: str, **attributes: str) -> ET.Element:
-    return ET.SubElement(parent, qualified(tag), attributes)
+def add_element(parent: ET.Element, tag: str, **attributes: str) -> ET.Element:
+    return ET.SubElement(parent, qualified_tag(tag), attributes)
 
 
-def qualified(tag: str) -> str:
+def qualified_tag(tag: str) -> str:
     prefix, _, name = tag.partition(":")
     return f"{{{NAMESPACES[prefix]}}}{name}"
 
@@ -93,84 +93,90 @@ def parameter_file_path(component: str) -> str:
     return f"resources/{component}.ssv"
 
 
-def add_units(root: ET.Element, components: Components) -> None:
-    parent = add(root, "ssd:Units")
+def add_units_element(root: ET.Element, components: Components) -> None:
+    parent = add_element(root, "ssd:Units")
     each = [(c, c.unit(p)) for c in components.values() for p in (*c.inputs, *c.outputs)]
     used = {unit: one.fmu.units[unit] for one, unit in each if unit}
     for name, unit in sorted(used.items()):
         powers = {base: str(power) for base, power in unit.exponents.items()}
         if unit.factor != 1.0:
             powers["factor"] = repr(unit.factor)
-        add(add(parent, "ssc:Unit", name=name), "ssc:BaseUnit", **powers)
+        add_element(add_element(parent, "ssc:Unit", name=name), "ssc:BaseUnit", **powers)
 
 
-def add_component(elements: ET.Element, name: str, one: Component, version: str) -> None:
+def add_component_element(elements: ET.Element, name: str, one: Component, version: str) -> None:
     file = {"type": "application/x-fmu-sharedlibrary", "source": f"resources/{one.path.name}"}
-    component = add(elements, "ssd:Component", name=name, **file)
-    connectors = add(component, "ssd:Connectors")
+    component = add_element(elements, "ssd:Component", name=name, **file)
+    connectors = add_element(component, "ssd:Connectors")
     for kind, ports in (("input", one.inputs), ("output", one.outputs)):
         for port in ports:
-            connector = add(connectors, "ssd:Connector", name=port, kind=kind)
+            connector = add_element(connectors, "ssd:Connector", name=port, kind=kind)
             unit = {"unit": one.unit(port)} if one.unit(port) else {}
-            add(connector, f"ssc:{REAL[version]}", **unit)
-    bindings = add(component, "ssd:ParameterBindings")
-    add(bindings, "ssd:ParameterBinding", source=parameter_file_path(name))
+            add_element(connector, f"ssc:{REAL[version]}", **unit)
+    bindings = add_element(component, "ssd:ParameterBindings")
+    add_element(bindings, "ssd:ParameterBinding", source=parameter_file_path(name))
 
 
-def add_master(system: ET.Element, step: float) -> None:
+def add_master_annotation(system: ET.Element, step: float) -> None:
     """Add OMSimulator's annotation with the fixed step of its master."""
     # its C interface reads oms:FixedStepMaster, its Python interface oms:SimulationInformation
     length = format(Decimal(repr(step)), "f")  # its schema takes no exponent
-    annotations = add(system, "ssd:Annotations")
-    annotation = add(annotations, "ssc:Annotation", type="org.openmodelica")
+    annotations = add_element(system, "ssd:Annotations")
+    annotation = add_element(annotations, "ssc:Annotation", type="org.openmodelica")
     method = {"name": "oms_ma_default", "method": "oms_ma", "fixedStepSize": length}
-    information = add(add(annotation, "oms:Annotations"), "oms:SimulationInformation", **method)
+    information = add_element(
+        add_element(annotation, "oms:Annotations"), "oms:SimulationInformation", **method
+    )
     master = {"description": "oms-ma", "stepSize": length, "relativeTolerance": "0.0001"}
-    add(information, "oms:FixedStepMaster", **master)
+    add_element(information, "oms:FixedStepMaster", **master)
 
 
-def add_connection(connections: ET.Element, ours: str, link: Link, given: bool) -> None:
-    """Add a connection from the oscillator if the variable is ``given`` by it, else to it."""
+def add_connection_element(
+    connections: ET.Element, ours: str, link: Link, from_oscillator: bool
+) -> None:
+    """Add a connection from the oscillator, or to it."""
     ends = [("oscillator", ours), ("shaker", link.theirs)]
-    (start, output), (end, taken) = ends if given else reversed(ends)
+    (start, output), (end, taken) = ends if from_oscillator else reversed(ends)
     places = {"startElement": start, "startConnector": output}
     places |= {"endElement": end, "endConnector": taken}
-    factor = 1.0 / link.scale if given else link.scale
+    factor = 1.0 / link.scale if from_oscillator else link.scale
     if factor != 1.0:
         places["suppressUnitConversion"] = "true"
-    connection = add(connections, "ssd:Connection", **places)
+    connection = add_element(connections, "ssd:Connection", **places)
     if factor != 1.0:
-        add(connection, "ssc:LinearTransformation", factor=repr(factor), offset="0.0")
+        add_element(connection, "ssc:LinearTransformation", factor=repr(factor), offset="0.0")
 
 
-def system_description(
+def system_description_xml(
     description: str, times: tuple[float, float], components: Components, links: Links, version: str
 ) -> bytes:
     stop_time, step = times
     named = {"name": "WeakDrive", "version": version}
-    root = ET.Element(qualified("ssd:SystemStructureDescription"), named)
-    system = add(root, "ssd:System", name="WeakDrive", description=description)
-    elements = add(system, "ssd:Elements")
+    root = ET.Element(qualified_tag("ssd:SystemStructureDescription"), named)
+    system = add_element(root, "ssd:System", name="WeakDrive", description=description)
+    elements = add_element(system, "ssd:Elements")
     for name, one in components.items():
-        add_component(elements, name, one, version)
-    connections = add(system, "ssd:Connections")
+        add_component_element(elements, name, one, version)
+    connections = add_element(system, "ssd:Connections")
     for ours, link in links.items():
-        add_connection(connections, ours, link, ours in OSCILLATES)
-    add_master(system, step)
-    add_units(root, components)
-    add(root, "ssd:DefaultExperiment", startTime="0.0", stopTime=repr(stop_time))
+        add_connection_element(connections, ours, link, ours in OSCILLATES)
+    add_master_annotation(system, step)
+    add_units_element(root, components)
+    add_element(root, "ssd:DefaultExperiment", startTime="0.0", stopTime=repr(stop_time))
     return xml_bytes(root)
 
 
-def parameter_values(values: Values, version: str) -> bytes:
+def parameter_set_xml(values: Values, version: str) -> bytes:
     """Build the XML file of a component's parameters; false ones are left out."""
-    root = ET.Element(qualified("ssv:ParameterSet"), version=version, name=SET)
-    group = add(root, "ssv:Parameters")
+    root = ET.Element(qualified_tag("ssv:ParameterSet"), version=version, name=SET)
+    group = add_element(root, "ssv:Parameters")
     for variable, value in values.items():
         if value is not False:
             kind = "Boolean" if value is True else REAL[version]
             text = "true" if value is True else repr(float(value))
-            add(add(group, "ssv:Parameter", name=variable), f"ssv:{kind}", value=text)
+            add_element(
+                add_element(group, "ssv:Parameter", name=variable), f"ssv:{kind}", value=text
+            )
     return xml_bytes(root)
 
 
@@ -263,22 +269,22 @@ def write_ssp(
         shaker, links = drive_component(drive, other, connect, units, parameters)
         text = shaker.fmu.name
     state = "bonded (undamaged)" if structure.bonded else "delaminated"
-    path_of_own = own or fmu_path(OSCILLATOR)
+    path_of_own = own or default_fmu_path(OSCILLATOR)
     inputs = tuple(name for name in links if name not in OSCILLATES)
-    start = oscillator_start(structure)
+    start = oscillator_start_values(structure)
     oscillator = Component(path_of_own, describe(path_of_own), inputs, OSCILLATES, start)
     components = {"oscillator": oscillator, "shaker": shaker}
     text = f"{text} with a {state} structure"
     times = float(stop), float(length)
-    system = system_description(text, times, components, links, version)
+    system = system_description_xml(text, times, components, links, version)
     files = {"SystemStructure.ssd": system}
     for name, one in components.items():
-        files[parameter_file_path(name)] = parameter_values(one.values, version)
+        files[parameter_file_path(name)] = parameter_set_xml(one.values, version)
     files |= {f"resources/{one.path.name}": one.path.read_bytes() for one in components.values()}
     return write_atomically(path, lambda temporary: write_archive(temporary, files))
 
 
-def fmu_path(model: str) -> Path:
+def default_fmu_path(model: str) -> Path:
     from ..fmu.exported import find
 
     return find(model, "fmi2").path
@@ -287,12 +293,13 @@ def fmu_path(model: str) -> Path:
 def motor_component(
     drive: Drive, fmu: Path | None, voltage: float | None, speed: float | None
 ) -> tuple[Component, Links, str]:
+    """Return the motor's component, its connections, and a text that describes it."""
     if voltage is None:
         raise InputError("voltage: expected with a motor, in V")
     checked_range("voltage", voltage, "V")
     speed = voltage / drive.motor_constant if speed is None else speed
     checked_range("speed_start", speed, "rad/s")
-    path = fmu or fmu_path(MOTOR_SHAKER)
+    path = fmu or default_fmu_path(MOTOR_SHAKER)
     values = {**drive.parameters(), "speed_start": speed, "voltage": voltage}
     links = {name: Link(name, 1.0) for name in ("box_force", "box_acceleration", "box_jerk")}
     component = Component(path, describe(path), ("box_force",), MOTOR_GIVES, values)
@@ -311,7 +318,10 @@ def drive_component(
     connect = checked_mapping("connect", connect) if connect is not None else None
     units = checked_mapping("units", units)
     if isinstance(drive, Shaker):
-        path, values = fmu or fmu_path(ELECTRODYNAMIC_SHAKER), {**drive.parameters(), **values}
+        path, values = (
+            fmu or default_fmu_path(ELECTRODYNAMIC_SHAKER),
+            {**drive.parameters(), **values},
+        )
     else:
         path = Path(drive)
     description, exchanged = describe(path), ("box_force", "box_acceleration")

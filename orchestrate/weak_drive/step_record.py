@@ -50,7 +50,7 @@ class Record:
     recorded: Floats = field(default_factory=lambda: NOTHING)  # of the drive there, (ends, names)
 
     @classmethod
-    def of_rows(
+    def from_rows(
         cls, names: tuple[str, ...], rows: Any, ends: Any, recorded: Any = NOTHING
     ) -> Record:
         columns = np.ascontiguousarray(np.transpose(rows))
@@ -72,18 +72,18 @@ class Record:
         first = PLACE["x1"]
         return OscillatorOutputs._make(self.columns[first : first + len(OscillatorOutputs._fields)])
 
-    def cubics(self) -> Cubic:
-        """Return the same, followed by the forces on the halves."""
+    def input_cubics(self) -> Cubic:
+        """Return the box acceleration as :meth:`acceleration_cubics`, then forces on the halves."""
         pushes = (name for name in self.names[len(LEADING) :] if name.endswith("_then"))
-        return *self.acceleration(), *map(self.__getitem__, pushes)
+        return *self.acceleration_cubics(), *map(self.__getitem__, pushes)
 
-    def acceleration(self) -> Cubic:
+    def acceleration_cubics(self) -> Cubic:
         """Return the box acceleration over the steps that end here, as cubics."""
         first = PLACE["acceleration_then"]
         return tuple(self.columns[first : first + 4])
 
 
-def joined(records: Sequence[Record]) -> Record:
+def join_records(records: Sequence[Record]) -> Record:
     starts = np.cumsum([0, *(record.columns.shape[1] - 1 for record in records)])
     columns = [records[0].columns[:, :1], *(record.after.columns for record in records)]
     ends = [start + record.ends for start, record in zip(starts, records, strict=False)]

@@ -31,7 +31,7 @@ def sommerfeld(data: Datasets, claim: Claim) -> Measured:
     structure, drive = Structure.from_file(BEAM), Drive.from_file(BEAM)
     folds, volts = averaged.folds(structure, drive), drive.motor_constant * structure.omega
     text = "; ".join(f"fold at {one.Omega:.4f} omega, {one.eta0 * volts:.3f} V" for one in folds)
-    resonance = averaged.resonance(structure, drive)
+    resonance = averaged.bonded_resonance(structure, drive)
     return Measured(
         f"resonance at {resonance:.4f} omega; {text or 'no fold: the speed does not jump'}",
         [len(folds) > 1],

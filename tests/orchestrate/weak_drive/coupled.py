@@ -9,7 +9,7 @@ from orchestrate import Drive, Structure
 from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find
 from orchestrate.weak_drive.energy_balance import Energies, EnergyBalance
 from orchestrate.weak_drive.master import Master, Scheme
-from orchestrate.weak_drive.run import oscillator_start
+from orchestrate.weak_drive.run import oscillator_start_values
 
 GRID = 0.2  # of the comparisons
 ORDER = ("x1", "v1", "x2", "v2", "box_position", "box_velocity", "angle", "speed")
@@ -73,7 +73,7 @@ def master(system, scheme, state, form="fmi3", kind=Master):
     oscillator, shaker = (find(model, form).path for model in (OSCILLATOR, MOTOR_SHAKER))
     starts, shaker_starts = starts_of(system, state)
     with Instance(oscillator) as one, Instance(shaker) as other:
-        one.initialize(**oscillator_start(system.structure), **starts)
+        one.initialize(**oscillator_start_values(system.structure), **starts)
         other.initialize(**system.drive.parameters(), **shaker_starts)
         made = kind(one, other, scheme)
         yield made
@@ -101,7 +101,7 @@ def history(system, scheme, voltage, state, time, form="fmi3"):
     with master(system, scheme, state, form) as m:
         rows = [state]
         for k in range(round(time / scheme.h)):
-            energies = balance.add(m.step(voltage))
+            energies = balance.add_record(m.step(voltage))
             if (k + 1) % every == 0:
                 rows.append(state_of(m))
         return np.array(rows), Energies(*(float(one[-1]) for one in energies))

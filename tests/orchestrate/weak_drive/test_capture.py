@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from orchestrate import capture
-from orchestrate.weak_drive.averaged import dividing_speed
-from orchestrate.weak_drive.capture import threshold_voltage
+from orchestrate.weak_drive.averaged import bonded_dividing_speed
+from orchestrate.weak_drive.capture import bracket_threshold_voltage
 from orchestrate.weak_drive.capture_rule import CONVERGED, UNDECIDED, CaptureOutcome
 
 from ...sparing import ordinary
@@ -38,16 +38,16 @@ def test_the_border_is_that_of_the_whole_system(name):
     assert high - low <= 1e-4 and float(found.border) == 0.5 * (low + high)
     times = np.arange(0.0, 1500.0, 0.5)
     sides = [Monolith(*system, v).solve(rest(), times)[0][:, 7] for v in (low - 1e-4, high + 1e-4)]
-    assert sides[0][-100:].mean() < dividing_speed(*system) < sides[1][-100:].mean()
+    assert sides[0][-100:].mean() < bonded_dividing_speed(*system) < sides[1][-100:].mean()
     if name == "swinging":
-        assert (sides[0] > dividing_speed(*system)).sum() * 0.5 > 20 * 2 * np.pi / 1.25
+        assert (sides[0] > bonded_dividing_speed(*system)).sum() * 0.5 > 20 * 2 * np.pi / 1.25
     if name == "quick":
         assert found.decision.values.tolist() == ["converged", "converged"]
         assert float(found.border) == pytest.approx(1.54443, abs=1e-4)
         assert float(found.fold) == pytest.approx(1.58306, abs=1e-4) and not found.above_fold
         below, beyond = float(found.speed_low), float(found.speed_high)
         assert below < 1.3 and beyond > 1.5 and found.speed[1] == pytest.approx(beyond, abs=1e-3)
-        reached = times[np.flatnonzero(sides[1] < dividing_speed(*system))[-1]]
+        reached = times[np.flatnonzero(sides[1] < bonded_dividing_speed(*system))[-1]]
         assert np.isnan(found.passage_time[0]) and 0.5 < found.passage_time[1] / reached < 2.0
 
 
@@ -71,7 +71,7 @@ def test_undecided_starts_widen_the_border(known):
             return CaptureOutcome(CONVERGED)
         return CaptureOutcome(CONVERGED, True, 1.0) if voltage > 1.47 else CaptureOutcome(UNDECIDED)
 
-    ends = threshold_voltage(known, [start(voltage) for voltage in known], start, 0.01)
+    ends = bracket_threshold_voltage(known, [start(voltage) for voltage in known], start, 0.01)
     low, high = (end.voltage for end in ends)
     assert 1.27 <= low < 1.28 and 1.47 < high <= 1.48
     assert len(asked) < 30

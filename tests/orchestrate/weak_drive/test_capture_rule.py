@@ -10,10 +10,10 @@ from orchestrate.weak_drive.capture_rule import (
     NEITHER,
     UNDECIDED,
     SettlingTest,
+    default_time_limit,
     longest_time_constant,
-    settling_test,
+    make_settling_test,
     time_past_the_fold,
-    usual_limit,
 )
 from orchestrate.weak_drive.steady_speed import SettledSettings
 
@@ -77,7 +77,7 @@ def test_each_record_is_decided(name):
     outcome, when = decided(speed)
     assert (outcome.decision, outcome.passed) == (decision, passed)
     assert earliest <= when <= latest
-    assert outcome.captured == (decision in (CONVERGED, BOUNDED) and not passed)
+    assert outcome.is_captured == (decision in (CONVERGED, BOUNDED) and not passed)
     if decision != UNDECIDED:
         assert outcome.speed == pytest.approx(speed[-1000:].mean(), abs=5e-3)
     if decision == CONVERGED and passed:
@@ -104,22 +104,25 @@ def test_it_has_to_stay_for_some_revolutions():
 
 def test_limits_scale_with_the_drive():
     """Of slow motors, of little damping and of close voltages more time is asked."""
-    usual, drive, bonded = usual_limit(*QUICK, 1e-4), QUICK.drive, QUICK.as_bonded()
+    usual, drive, bonded = default_time_limit(*QUICK, 1e-4), QUICK.drive, QUICK.as_bonded()
     lighter = drive.replace(armature_resistance=10.0 * drive.armature_resistance)  # b = 0.002
     slower = QUICK._replace(drive=lighter)
     assert longest_time_constant(*slower) == pytest.approx(500.0)
-    assert usual_limit(*slower, 1e-4) > 2.0 * usual and usual_limit(*QUICK, 1e-6) > 1.5 * usual
+    assert (
+        default_time_limit(*slower, 1e-4) > 2.0 * usual
+        and default_time_limit(*QUICK, 1e-6) > 1.5 * usual
+    )
     creeping = [time_past_the_fold(*bonded, distance) for distance in (1e-6, 1e-4)]
     assert creeping[0] == pytest.approx(10.0 * creeping[1])
     fold = averaged.folds(*bonded)[0]  # by the integral over what the averaged speed needs there
     near, Omega = fold.Omega - 1e-3, np.linspace(fold.Omega - 0.05, fold.Omega + 0.05, 200_001)
-    slope = np.diff(averaged.no_load_speed(*bonded, [near - 1e-5, near + 1e-5]))[0] / 2e-5
+    slope = np.diff(averaged.stationary_voltage(*bonded, [near - 1e-5, near + 1e-5]))[0] / 2e-5
     rate = -averaged.growth_rates(*bonded, near)[0].real / slope
-    pace = rate * (1e-6 + fold.eta0 - averaged.no_load_speed(*bonded, Omega))
+    pace = rate * (1e-6 + fold.eta0 - averaged.stationary_voltage(*bonded, Omega))
     assert creeping[0] == pytest.approx(np.trapezoid(1.0 / pace, Omega), rel=0.05)
     assert usual == pytest.approx(600.0 * longest_time_constant(*QUICK) + 10.0 * creeping[1])
     assert longest_time_constant(*QUICK.with_structure(d1=0.0)) == 1000.0
-    tests = [settling_test(*BEAM, 7, distance) for distance in (1e-3, 1e-4, 1e-7, 1.0)]
+    tests = [make_settling_test(*BEAM, 7, distance) for distance in (1e-3, 1e-4, 1e-7, 1.0)]
     assert [one.rule.tolerance for one in tests] == pytest.approx([1e-4, 1e-5, 1e-6, 1e-4])
     assert tests[0].threshold / tests[0].omega == pytest.approx(1.4, abs=0.1)
     assert (tests[0].omega, tests[0].stay) == (BEAM.structure.omega, 7)

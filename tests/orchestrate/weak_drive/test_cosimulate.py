@@ -20,7 +20,7 @@ from orchestrate.weak_drive.connection import (
     UNITS,
     Connection,
     Link,
-    proposals,
+    propose_connections,
 )
 
 from ...sparing import ordinary
@@ -268,13 +268,13 @@ def test_a_drive_runs_without_a_structure(drive):
 def test_what_is_proposed_has_the_causality_and_a_name_like_ours(drive):
     names = {"box_acceleration": "table_acc", "box_velocity": "table_vel"}
     names |= {"box_position": "table_pos", "box_force": "specimen_force"}
-    assert proposals(describe(drive)) == names
+    assert propose_connections(describe(drive)) == names
     for name in (*MOTION, FORCE[0], *PUSHES):
         assert unit_by_name(IN_WORDS[name]).exponents == UNITS[name]
     assert [UNITS[name]["s"] for name in FORCE] == [-2, -3, -4, -5]
-    assert Connection({"force2": Link("push", 1.0), "box_force": Link("f", 1.0)}).pushes == (
-        "force2",
-    )
+    assert Connection(
+        {"force2": Link("push", 1.0), "box_force": Link("f", 1.0)}
+    ).connected_pushes == ("force2",)
 
 
 @pytest.mark.usefixtures("here")

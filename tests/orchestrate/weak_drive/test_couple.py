@@ -42,7 +42,7 @@ def test_a_jump_on_a_ramp_is_late_by_the_rate_to_two_thirds():
     lags = np.array([[1.0, rate ** (2 / 3)] for rate in rates])
     assert np.linalg.solve(lags, found)[0] == pytest.approx(1.5831, abs=2e-3)
     assert ramps[0].averaged_jumps[0] == pytest.approx(1.58306, abs=1e-5)
-    beyond, divides = ramps[0].time > ramps[0].passage_time, averaged.dividing_speed(*quick)
+    beyond, divides = ramps[0].time > ramps[0].passage_time, averaged.bonded_dividing_speed(*quick)
     assert ramps[0].Omega[beyond].min() > divides > ramps[0].Omega[~beyond][:-1].max()
 
 
@@ -130,7 +130,7 @@ def test_revolutions_are_the_turns_that_are_new():
     table[[names.index(name) for name in columns]] = np.array(list(columns.values()))
     revolutions, found = Revolutions(QUICK.structure), []
     for ends in np.split(np.arange(count), [7, 100, 101]):
-        found += revolutions.completed(Record(names, table, ends)).tolist()
+        found += revolutions.complete_revolutions(Record(names, table, ends)).tolist()
     expected = completed(*columns.values())
     assert len(found) > 100 and len({row[2] > 0.0 for row in found}) == 2
     assert [tuple(row) for row in found] == expected

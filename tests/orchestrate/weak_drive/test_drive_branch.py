@@ -7,7 +7,7 @@ from orchestrate import couple, drive_branch
 from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.drive_branch import DriveBranchJob
-from orchestrate.weak_drive.drive_tracer import motion_near
+from orchestrate.weak_drive.drive_tracer import find_motion_near
 from orchestrate.weak_drive.shooting import Shooter
 
 from .coupled import BEAM, QUICK
@@ -22,7 +22,7 @@ EXACT = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
 def branch_of(system, most, range_):
     """Legs of a branch over a range of the resonance, and the unit of length."""
     omega = system.structure.omega
-    resonance = averaged.resonance(*system.as_bonded())
+    resonance = averaged.bonded_resonance(*system.as_bonded())
     speeds = tuple(share * resonance * omega for share in range_)
     asked = {"longest": 0.1, "most": most, "period": 2, "steps": 48, "settle": 600.0 / omega}
     job = DriveBranchJob("branch", *system, speeds, **asked)
@@ -35,9 +35,9 @@ def motion_of(system, speed, revolutions=1):
     """The motion of a speed, and its state of the whole system as :mod:`.monolithic` has it."""
     with Instance(find(OSCILLATOR).path) as one, Instance(find(MOTOR_SHAKER).path) as other:
         shooter = Shooter((one, other), *system, revolutions=revolutions, steps=48, length=20.0)
-        volts = float(averaged.no_load_speed(*system, speed))
-        state = shooter.settle(volts, speed, 600.0)
-        motion = motion_near(shooter, np.append(state, [volts, speed]), up=True)
+        volts = float(averaged.stationary_voltage(*system, speed))
+        state = shooter.simulate_at_speed(volts, speed, 600.0)
+        motion = find_motion_near(shooter, np.append(state, [volts, speed]), up=True)
         fresh = Shooter((one, other), *system, revolutions=revolutions, steps=48, length=20.0)
         fresh.angle = shooter.angle
         shots = [each.shoot(motion.root.unknowns).end for each in (shooter, fresh)]
@@ -91,7 +91,7 @@ def test_a_pressed_structure_moves_as_the_bonded_one_until_it_parts():
     opening = 3.0 * kappa / mu * (1.0 + mu) / (1.0 + kappa) / (kappa / mu - 1.0)
     assert sizes[shut].max() < opening < sizes[~shut].min()
     places = np.array([motion.coordinates for motion in motions])
-    theory = averaged.no_load_speed(*PRESSED.as_bonded(), places[:, 1])
+    theory = averaged.stationary_voltage(*PRESSED.as_bonded(), places[:, 1])
     assert places[shut, 0] == pytest.approx(theory[shut], abs=2e-4)
     assert theory[-1] - places[-1, 0] > 8e-4
     for motion in (motions[0], motions[-1]):
@@ -158,7 +158,7 @@ def test_folds_and_what_lies_between():
     assert points(branch, "bonded", "fold") == pytest.approx([up.eta0, down.eta0], abs=1e-4)
     leg = branch.sel(structure="bonded", leg="from below").dropna("point")
     speed = leg.speed.values
-    theory = averaged.no_load_speed(*bonded, speed)
+    theory = averaged.stationary_voltage(*bonded, speed)
     assert leg.voltage.values == pytest.approx(theory, abs=2e-4)
     assert branch.end.sel(structure="bonded").values[0] == "limit"
     clear = np.minimum(abs(speed - up.Omega), abs(speed - down.Omega)) > 2e-3

@@ -6,8 +6,8 @@ import pytest
 from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find
 from orchestrate.response.spectra import amplitude_spectrum
 from orchestrate.weak_drive import averaged
-from orchestrate.weak_drive.couple import couple_job
-from orchestrate.weak_drive.drive_spectra import drive_spectra, voltage_at_resonance
+from orchestrate.weak_drive.couple import make_couple_job
+from orchestrate.weak_drive.drive_spectra import drive_spectra, voltage_between_jumps
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.run import MotorRun
 from orchestrate.weak_drive.schedule import Ramp
@@ -20,12 +20,12 @@ RATE, HOLD = 4e-4, 400.0
 
 def whole_lines(speed):
     """The monolithic solution from the end of the same approach, sampled eight times as densely."""
-    voltage, revolutions, points = voltage_at_resonance(*QUICK), 8, 2048
+    voltage, revolutions, points = voltage_between_jumps(*QUICK), 8, 2048
     ramp = Ramp(0.85 * voltage, voltage, RATE, settle=300.0, back=False)
-    job = couple_job(*QUICK, ramp, Scheme(0.1))
+    job = make_couple_job(*QUICK, ramp, Scheme(0.1))
     with Instance(find(OSCILLATOR).path) as oscillator, Instance(find(MOTOR_SHAKER).path) as shaker:
         run = MotorRun(job, oscillator, shaker)
-        run.revolve(range(round((ramp.duration + HOLD) / 0.1)))
+        run.run_steps_by_revolution(range(round((ramp.duration + HOLD) / 0.1)))
         state = state_of(run.master)
         run.close()
     interval = 2.0 * np.pi / speed / points
@@ -48,8 +48,8 @@ def test_lines_of_both_structures():
     (glued, opened) = (float(quick.speed.sel(kind=one)) for one in ("bonded", "delaminated"))
     up, _ = averaged.folds(*QUICK)
     for speed in (glued, opened):  # the default voltage is at the resonance
-        half = 0.5 * averaged.amplitude(*QUICK, up.Omega)
-        assert speed < up.Omega and averaged.amplitude(*QUICK, speed) > half
+        half = 0.5 * averaged.relative_amplitude(*QUICK, up.Omega)
+        assert speed < up.Omega and averaged.relative_amplitude(*QUICK, speed) > half
     H, ratio = averaged.transfer_functions(*QUICK, glued)
     expected = abs(H * (1.0 + ratio)) * glued**4 * QUICK.drive.length
     main = float(bonded.sel(order=1.0))

@@ -31,7 +31,7 @@ class Rotor:
         self.schedule, self.slope, self.speed = schedule, slope, start
         self.stiff = stiff
 
-    def speeds(self, steps):
+    def run_steps_for_speeds(self, steps):
         speeds = []
         for i in steps:
             x = self.speed - 1.3
@@ -55,7 +55,7 @@ def decided(slope, up=True, start=1.1, longest=2e4):
     first, last = (1.4, 1.6) if up else (1.6, 1.4)
     ramp = Ramp(first, last, 1e-4, back=False)
     loop = HysteresisLoop(lambda it: Rotor(it, slope, start), ramp, H, 1.0, 1.0, longest)
-    return loop.jumps(loop.hold_step(round(0.3 * ramp.duration / H)), last)
+    return loop.find_jumps(loop.hold_ramp_voltage(round(0.3 * ramp.duration / H)), last)
 
 
 def fold_of(slope, up=True):
@@ -80,10 +80,10 @@ class Scripted(HysteresisLoop):
         super().__init__(lambda _: None, Ramp(1.4, 1.6, 1e-3), H, 1.0, 1.0, 10.0)
         self.higher = higher
 
-    def hold(self, state, first, voltage, least=0.0):
+    def move_and_hold(self, state, first, voltage, min_time=0.0):
         motion = self.higher(state["motion"], first, voltage)
         stays = motion == state["motion"]
-        return self.at(voltage, motion)._replace(time=max(least * stays, 1.0))
+        return self.at(voltage, motion)._replace(time=max(min_time * stays, 1.0))
 
     def at(self, voltage, motion=0.0):
         speed = 1.3 + 0.5 * (voltage - 1.5) + motion
@@ -91,7 +91,7 @@ class Scripted(HysteresisLoop):
 
     def course(self):
         """The jumps between 1.5 and 1.56."""
-        return self.jumps(self.at(1.5), 1.56)
+        return self.find_jumps(self.at(1.5), 1.56)
 
 
 @pytest.mark.parametrize(
@@ -102,7 +102,7 @@ def test_a_jump_is_bracketed_within_the_width(length, bracket):
         return 0.1 if voltage > 1.506 or (motion and voltage > 1.5) else 0.0
 
     loop = Scripted(higher)
-    (jump,) = loop.jumps(loop.at(1.5), 1.5 + length)
+    (jump,) = loop.find_jumps(loop.at(1.5), 1.5 + length)
     assert jump.outcome == LOST and jump.low < 1.506 <= jump.high
     assert jump.high - jump.low == pytest.approx(bracket)
 
@@ -111,13 +111,13 @@ def test_a_jump_is_bracketed_within_the_width(length, bracket):
 def test_what_is_left_after_sixty_holds_is_undecided(monkeypatch, spent, outcomes):
     """They take 10 s; the motion is lost at 1.55."""
     loop = Scripted(lambda motion, before, voltage: 0.1 * (voltage > 1.55 or bool(motion)))
-    insert = loop.insert_between
+    insert = loop.insert_point_between
 
     def late(points, i):
         loop.spent = spent
         return insert(points, i)
 
-    monkeypatch.setattr(loop, "insert_between", late)
+    monkeypatch.setattr(loop, "insert_point_between", late)
     (jump,) = jumps = loop.course()
     assert [jump.outcome for jump in jumps] == outcomes
     assert jump.high == (1.56 if outcomes == [UNDECIDED] else pytest.approx(1.55, abs=1e-4))
@@ -156,10 +156,13 @@ def test_what_a_motion_has_become_is_compared_from_the_step_before_on(sign):
         asked.append(i)
         return Jump((LOST, UNDECIDED)[i % 2], points[i].voltage, points[i + 1].voltage)
 
-    loop.lasting, loop.jump_over = lambda point, *_: point._replace(lasts=next(lasts)), jump_over
-    loop.hold_grid, loop.insert_between = lambda *ends: points, lambda *step: False
-    loop.excess = loop.least = lambda *step: 1.0
-    found = loop.jumps(points[0], points[-1].voltage)
+    loop.hold_until_lasting, loop.update_step_and_find_jump = (
+        lambda point, *_: point._replace(lasts=next(lasts)),
+        jump_over,
+    )
+    loop.hold_grid, loop.insert_point_between = lambda *ends: points, lambda *step: False
+    loop.excess_change = loop.required_lifetime = lambda *step: 1.0
+    found = loop.find_jumps(points[0], points[-1].voltage)
     assert asked == [0, 1, 2, 2, 3]
     assert [jump.low for jump in found] == [point.voltage for point in points[:4]]
 
@@ -168,13 +171,13 @@ def test_a_voltage_that_is_left_out_is_not_tried_again(monkeypatch):
     """The speed settles at 1.53 and, held on there, does not."""
     loop = Scripted(lambda *now: 0.1 * (now[2] > 1.52))
     gone = {"speed": np.nan, "lasts": 0.0}
-    monkeypatch.setattr(loop, "lasting", lambda point, *_: point._replace(**gone))
+    monkeypatch.setattr(loop, "hold_until_lasting", lambda point, *_: point._replace(**gone))
     points = [loop.at(1.53), loop.at(1.53005, 0.1)]
     monkeypatch.setattr(loop, "hold_grid", lambda *ends: points)
-    loop.jumps(loop.at(1.5), 1.56)
+    loop.find_jumps(loop.at(1.5), 1.56)
     assert loop.left_out == {1.53}
     points = [loop.at(1.51), loop.at(1.55, 0.1)]  # 1.53 is half way
-    assert loop.insert_between(points, 0) and points[1].voltage == pytest.approx(1.54)
+    assert loop.insert_point_between(points, 0) and points[1].voltage == pytest.approx(1.54)
     assert loop.left_out == {1.53, 1.52}  # there the motion is the one before
 
 
@@ -188,10 +191,10 @@ def test_each_threshold_of_what_a_lost_motion_comes_to(error, widths):
             )
         )
         low, high = loop.at(1.521 - sign * 1e-3)._replace(error=error), loop.at(1.521, -0.02)
-        assert loop.lands_surely(low, high) == (widths > 32 and not error)
+        assert loop.lands_on_one_motion(low, high) == (widths > 32 and not error)
     for away, is_one in ((4.9e-3, True), (5.1e-3, False)):
         loop = Scripted(lambda *now, away=away: -0.02 if now[0] else away - 0.02)
-        assert loop.lands_surely(low, high) == (is_one and not error)
+        assert loop.lands_on_one_motion(low, high) == (is_one and not error)
 
 
 @pytest.mark.parametrize(("life", "place"), [(5.9, 1.51), (6.1, 1.52)])
@@ -199,11 +202,11 @@ def test_a_transient_is_held_for_five_times_its_first_hold_more(life, place):
     """It lives for that many holds between 1.51 and 1.52."""
 
     class Transient(Scripted):
-        def hold(self, state, first, voltage, least=0.0):
+        def move_and_hold(self, state, first, voltage, min_time=0.0):
             age = state.get("age", 0.0) * (voltage == first)
             lives = 0.1 if voltage > 1.52 else life if voltage > 1.51 else np.inf
-            is_lost = state["motion"] and voltage > 1.505 or age + max(least, 1.0) > lives
-            time = lives - age if is_lost and not state["motion"] else max(least, 1.0)
+            is_lost = state["motion"] and voltage > 1.505 or age + max(min_time, 1.0) > lives
+            time = lives - age if is_lost and not state["motion"] else max(min_time, 1.0)
             state = {"motion": 0.02 * bool(is_lost), "age": age + time}
             return self.at(voltage, state["motion"])._replace(state=state, time=time)
 
@@ -212,7 +215,11 @@ def test_a_transient_is_held_for_five_times_its_first_hold_more(life, place):
     assert jump.outcome == LOST and jump.low - 1e-9 <= place <= jump.high + 1e-9
     brief, *lives = (loop.at(1.52)._replace(time=time) for time in (0.0, 19.9, 20.1))
     for lived, least in zip(lives, (99.5, 100.0), strict=True):  # ten holds at most
-        assert loop.least(brief, lived) == loop.least(lived, brief) == pytest.approx(least)
+        assert (
+            loop.required_lifetime(brief, lived)
+            == loop.required_lifetime(lived, brief)
+            == pytest.approx(least)
+        )
 
 
 @pytest.mark.parametrize("change", [0.02, -0.02])
@@ -268,22 +275,22 @@ def test_growth_is_seen_from_rounding_errors_on(disturbance, lasts):
     """After `growths` growth times, that are e^30 = 1e13."""
 
     class Growing(Scripted):
-        def hold(self, state, first, voltage, least=0.0):
-            motion = disturbance * np.exp(self.growth_rate(None) * least)
-            return self.at(voltage, motion)._replace(time=least)
+        def move_and_hold(self, state, first, voltage, min_time=0.0):
+            motion = disturbance * np.exp(self.growth_rate(None) * min_time)
+            return self.at(voltage, motion)._replace(time=min_time)
 
         def growth_rate(self, point):
             return 1.0
 
     loop = Growing(None)
     loop.max_hold = 100.0
-    assert bool(loop.lasting(loop.at(1.52), loop.at(1.53), 0.0).lasts) == lasts
+    assert bool(loop.hold_until_lasting(loop.at(1.52), loop.at(1.53), 0.0).lasts) == lasts
 
 
 @pytest.mark.parametrize(("rate", "held"), [(3.1e-4, True), (2.9e-4, False)])
 def test_growth_that_takes_more_than_ten_holds_is_left_out(rate, held):
     class Slow(Scripted):
-        def hold(self, state, first, voltage, least=0.0):
+        def move_and_hold(self, state, first, voltage, min_time=0.0):
             return self.at(voltage)
 
         def growth_rate(self, point):
@@ -291,7 +298,7 @@ def test_growth_that_takes_more_than_ten_holds_is_left_out(rate, held):
 
     loop = Slow(None)
     loop.max_hold = 1e4
-    assert np.isfinite(loop.lasting(loop.at(1.52), loop.at(1.53), 0.0).speed) == held
+    assert np.isfinite(loop.hold_until_lasting(loop.at(1.52), loop.at(1.53), 0.0).speed) == held
 
 
 def line(*points):
@@ -325,7 +332,7 @@ PAST = (1.56, 1.38, 0.0), (1.60, 1.41, 0.0)  # one of 0.75 after 1.56
     ],
 )
 def test_each_threshold_of_a_step_that_is_looked_into(points, i, larger):
-    assert (Scripted(None).excess(line(*points), i, []) > 0.0) == larger
+    assert (Scripted(None).excess_change(line(*points), i, []) > 0.0) == larger
 
 
 def test_the_slope_before_a_jump_is_none_of_the_motion_after_it():
@@ -333,7 +340,7 @@ def test_the_slope_before_a_jump_is_none_of_the_motion_after_it():
     points = line(*STEP, (1.5201, 1.38, 0.0), (1.5601, 1.41, 0.0), (1.6001, 1.44, 0.0))
     jumps = [Jump(LOST, 1.50, 1.52), Jump(LOST, 1.52, 1.5201)]
     loop = Scripted(None)
-    assert loop.excess(points, 2, jumps) < 0.0 < loop.excess(points, 2, jumps[:1])
+    assert loop.excess_change(points, 2, jumps) < 0.0 < loop.excess_change(points, 2, jumps[:1])
 
 
 @pytest.mark.parametrize(
@@ -344,7 +351,7 @@ def test_the_slope_before_a_jump_is_none_of_the_motion_after_it():
 def test_each_threshold_of_one_motion(away, error, same):
     first, other = line((1.5, 1.3, 0.6 * error), (1.5, 1.3 + away, 0.8 * error))
     loop = Scripted(None)
-    assert loop.is_same(first, other) == loop.is_same(other, first) == same
+    assert loop.may_be_same_motion(first, other) == loop.may_be_same_motion(other, first) == same
 
 
 @pytest.mark.parametrize(("life", "outcome"), [(1.04, NONE), (1.06, LOST)])
@@ -352,23 +359,26 @@ def test_the_motion_on_the_way_back_has_to_last(life, outcome):
     """For five times what it takes to settle; it comes to the other one after ``life`` of that."""
 
     class Leaving(Scripted):
-        def hold(self, state, first, voltage, least=0.0):
-            return self.at(voltage, 0.1 * (least < 5.0 * life))._replace(time=1.05)
+        def move_and_hold(self, state, first, voltage, min_time=0.0):
+            return self.at(voltage, 0.1 * (min_time < 5.0 * life))._replace(time=1.05)
 
     loop = Leaving(None)
-    assert loop.way_back(loop.at(1.5), loop.at(1.5001, 0.1)) == outcome
+    assert loop.outcome_of_way_back(loop.at(1.5), loop.at(1.5001, 0.1)) == outcome
     for time, expected in ((2.0, 2.05), (2.1, 2.1)):  # since when the other one was lost
         high = loop.at(1.5)._replace(time=time)
-        assert loop.lasting(loop.at(1.5, 0.1), high, 9.0).time == pytest.approx(expected)
+        assert loop.hold_until_lasting(loop.at(1.5, 0.1), high, 9.0).time == pytest.approx(expected)
     loop, held = Scripted(lambda *now: 0.0), loop.at(1.5)._replace(lasts=3.0)
-    assert loop.lasting(held, held, 5.0).lasts == 5.0  # for the rest alone
+    assert loop.hold_until_lasting(held, held, 5.0).lasts == 5.0  # for the rest alone
 
 
 @pytest.mark.parametrize(("least", "excess"), [(5.0, 1.0), (1.0, 0.0)])
 def test_a_step_is_no_jump_before_its_motions_have_lasted(least, excess):
     loop = Scripted(lambda *now: 0.0)
-    loop.least, loop.excess = lambda *ends: least, lambda *step: excess
-    assert loop.jump_over([loop.at(1.5)._replace(lasts=2.0), loop.at(1.51)], 0, []) is None
+    loop.required_lifetime, loop.excess_change = lambda *ends: least, lambda *step: excess
+    assert (
+        loop.update_step_and_find_jump([loop.at(1.5)._replace(lasts=2.0), loop.at(1.51)], 0, [])
+        is None
+    )
 
 
 @pytest.mark.parametrize(("asked", "base", "rotor"), [({}, 4000, 200), ({"base_hold": 1}, 1, 200)])
@@ -404,28 +414,30 @@ def test_a_motion_is_held_for_a_time_unless_it_is_left(monkeypatch, later, error
         told.append(rows)
         return np.full(12 * bool(rows), 1.3 if len(told) < 4 else later)
 
-    run = SimpleNamespace(speeds=speeds, get_state=dict, close=list)
+    run = SimpleNamespace(run_steps_for_speeds=speeds, get_state=dict, close=list)
     loop = HysteresisLoop(lambda course: run, Ramp(1.4, 1.6, 1e-4), 1.0, 1.0, 1.0, 2e4)
-    point = loop.hold(None, 1.5, 1.5, least=1500.0)  # of pieces of 50/omega
+    point = loop.move_and_hold(None, 1.5, 1.5, min_time=1500.0)  # of pieces of 50/omega
     assert point.speed == pytest.approx(later) and len([rows for rows in told if rows]) == pieces
     assert point.time == 50.0 * pieces
     loop.step = 200.0  # longer than a piece
-    assert loop.hold(None, 1.5, 1.5).time in 200.0 * np.arange(1, 9)
+    assert loop.move_and_hold(None, 1.5, 1.5).time in 200.0 * np.arange(1, 9)
     loop.step = 1.0
-    assert loop.hold(None, 1.5, 1.501).time % 50.0 == 0.0  # without the 20 that it comes in
+    assert (
+        loop.move_and_hold(None, 1.5, 1.501).time % 50.0 == 0.0
+    )  # without the 20 that it comes in
 
 
 def test_where_a_speed_between_is_sought(monkeypatch):
     """In the middle, then nearer to the lower voltage."""
     loop, sought = Scripted(lambda *now: 0.0), []
 
-    def nowhere(low, voltage, high, lives):
+    def nowhere(low, voltage, high, must_last):
         sought.append(voltage)
         return loop.at(voltage)._replace(speed=np.nan)
 
-    monkeypatch.setattr(loop, "hold_beside", nowhere)
+    monkeypatch.setattr(loop, "hold_within_step", nowhere)
     points = line((1.5, 1.3, 0.0), (1.5019, 1.31, 0.0))
-    assert not loop.insert_between(points, 0) and len(points) == 2
+    assert not loop.insert_point_between(points, 0) and len(points) == 2
     assert sought == pytest.approx([1.5 + part * 1.9e-3 for part in (0.5, 0.25, 0.75)])
 
 
@@ -439,7 +451,7 @@ def test_where_a_speed_between_is_sought(monkeypatch):
 def test_the_way_back_settles_but_for_single_voltages(unsettled, away, comes):
     loop = Scripted(lambda *now: np.nan if round(now[2], 3) in unsettled else away)
     points = [loop.at(voltage) for voltage in (1.5, 1.51, 1.52, 1.53, 1.54, 1.55)]
-    assert loop.comes_back(points) == comes
+    assert loop.comes_back_over_all(points) == comes
 
 
 @pytest.mark.parametrize(("away", "comes"), [(1.9e-3, False), (2.1e-3, True)])
@@ -451,7 +463,7 @@ def test_the_way_back_goes_on_with_the_motion_that_another_parts_from(away, come
 
     loop = Scripted(higher)
     points = [*(loop.at(voltage) for voltage in (1.5, 1.52, 1.54)), loop.at(1.55, 1e-4)]
-    assert loop.comes_back(points) == comes
+    assert loop.comes_back_over_all(points) == comes
 
 
 @pytest.mark.parametrize(("speed", "again"), [(1.304, True), (1.306, False)])
@@ -461,24 +473,26 @@ def test_a_motion_nearer_to_the_one_before_is_held_on(monkeypatch, speed, again,
     low, here, high = line((1.5, 1.3, 0.0), (1.501, speed, 0.0), (1.501, 1.31, 0.0))
     here = here._replace(time=1.0)
     monkeypatch.setattr(loop, "hold_from", lambda *asked: here)
-    monkeypatch.setattr(loop, "lasting", lambda point, high, least: least)
-    assert loop.hold_beside(low, 1.501, high, lives) == (5.0 * lives if again else here)
+    monkeypatch.setattr(loop, "hold_until_lasting", lambda point, high, least: least)
+    assert loop.hold_within_step(low, 1.501, high, lives) == (5.0 * lives if again else here)
 
 
 def test_a_ramp_is_taken_up_in_the_middle_of_a_step_from_the_checkpoint_before(monkeypatch):
     asked = []
-    run = SimpleNamespace(set_state=asked.append, speeds=asked.append, get_state=lambda: "there")
+    run = SimpleNamespace(
+        set_state=asked.append, run_steps_for_speeds=asked.append, get_state=lambda: "there"
+    )
     run.close = list
     loop = HysteresisLoop(lambda course: run, Ramp(1.4, 1.6, 1e-3), 2.0, 1.0, 1.0, 1.0)
     memories = (f"{name}_memory" for name in ("master", "balance", "revolution", "control"))
     table = dict.fromkeys(("oscillator_state", "shaker_state", *memories), np.arange(3))
     loop.add_checkpoints(table, 10, 25)  # before steps 10, 20 and 25, the end
-    assert loop.state_before(0) is None and list(loop.checkpoints) == [10, 20, 25]
+    assert loop.ramp_state_before(0) is None and list(loop.checkpoints) == [10, 20, 25]
     assert loop.checkpoints[20]["master_memory"].tolist() == [1]
-    assert loop.state_before(23) == loop.state_before(23) == "there"
+    assert loop.ramp_state_before(23) == loop.ramp_state_before(23) == "there"
     assert asked == [loop.checkpoints[20], range(20, 23)]
-    monkeypatch.setattr(loop, "hold", lambda *held: held)
-    assert loop.hold_step(23) == ("there", *[pytest.approx(1.4 + 1e-3 * 23.5 * 2.0)] * 2)
+    monkeypatch.setattr(loop, "move_and_hold", lambda *held: held)
+    assert loop.hold_ramp_voltage(23) == ("there", *[pytest.approx(1.4 + 1e-3 * 23.5 * 2.0)] * 2)
 
 
 @pytest.mark.parametrize(("steep", "width"), [(0.1, 2e-3), (0.01, 2e-2)])
@@ -486,8 +500,8 @@ def test_a_motion_whose_disturbances_grow_slowly_is_held_for_their_growth_time(s
     """Stable up to 1.52; nowhere past it is the end of the motion but by a hold long enough."""
 
     class Slow(Scripted):
-        def hold(self, state, first, voltage, least=0.0):
-            motion = 0.1 if state["motion"] or (least and voltage > 1.52) else 0.0
+        def move_and_hold(self, state, first, voltage, min_time=0.0):
+            motion = 0.1 if state["motion"] or (min_time and voltage > 1.52) else 0.0
             return self.at(voltage, 0.1 if voltage > 1.55 else motion)
 
         def hold_from(self, point, voltage):
@@ -543,18 +557,18 @@ def test_where_a_ramp_shows_a_jump():
     """Late, where the slip falls from that before to that after; not at all if the ramp ends."""
     time, ramp = record_of([(0, 0.03), (800, 0.03), (900, 0.01), (2000, 0.01)])
     before, half, after = np.interp(
-        ramp.rows_shown(1.26, 1.2601, 1.23, 1.2501), range(len(time)), time
+        ramp.rows_of_jump(1.26, 1.2601, 1.23, 1.2501), range(len(time)), time
     )
     assert before == pytest.approx(810.0, abs=15.0)
     assert half == pytest.approx(850.0, abs=15.0) and after == pytest.approx(890.0, abs=15.0)
-    assert np.isnan(ramp.rows_shown(1.26, 1.2601, 1.23, 1.2901)).all()
+    assert np.isnan(ramp.rows_of_jump(1.26, 1.2601, 1.23, 1.2901)).all()
     assert jump_labels(["up", "down", "up"]) == ["up", "down", "up 2"]
 
 
 def test_a_ramp_that_is_past_a_jump_before_its_voltage():
     """By an earlier one, its slip is below that after the jump from the first row on."""
     _, ramp = record_of([(0, 0.01), (2000, 0.005)])
-    assert np.isfinite(ramp.rows_shown(1.26, 1.2601, 1.23, 1.2401)).all()
+    assert np.isfinite(ramp.rows_of_jump(1.26, 1.2601, 1.23, 1.2401)).all()
 
 
 CLOSE = system_of(  # its folds, by its branch, at 1.13468 and 1.13041

@@ -76,7 +76,7 @@ def test_amplitudes_between_communication_points(case):
     with master(case.system, Scheme(0.17), case.state) as m:
         revolutions, begin, seen = Revolutions(case.system.structure), 0.0, 0
         while m.time < TIME - 0.2:
-            row = revolutions.add(m.step(case.voltage))[0]
+            row = revolutions.add_record(m.step(case.voltage))[0]
             for amplitude, box in zip(row["amplitude"], row["box_amplitude"], strict=True):
                 part = case.fine[(case.times > begin - 1e-9) & (case.times < m.time + 1e-9)]
                 assert amplitude == pytest.approx(0.5 * np.ptp(part[:, 0]), rel=1e-4)
@@ -108,7 +108,7 @@ def test_losses_of_the_balance_are_those_of_the_dampers():
     system = QUICK.as_bonded()
     with master(system, Scheme(0.05), rest(1.2)) as m:
         record = m.run([1.5] * 400)
-    dampers = EnergyBalance(system.structure).add(record).dampers[-1]
+    dampers = EnergyBalance(system.structure).add_record(record).dampers[-1]
     powers = (system.structure.d1 + system.structure.d2) * record["v1"] ** 2
     simpson = powers[0] + 4 * powers[1:-1:2].sum() + 2 * powers[2:-1:2].sum() + powers[-1]
     assert dampers == pytest.approx(0.05 / 3 * simpson, rel=1e-6) and dampers > 0.0

@@ -64,7 +64,7 @@ def test_means_and_moments_of_a_course_are_exact(seed):
     times[4] = times[3]  # a jump
     course = Course(tuple(times), tuple(rng.normal(size=8)))
     edges = np.sort(np.append(0.0, rng.uniform(0.0, 1.3, 6)))
-    first, last, means, moments = course.over_steps(edges)
+    first, last, means, moments = course.ends_means_and_moments(edges)
     for i, (t0, t1) in enumerate(zip(edges, edges[1:], strict=False)):
         fine = np.linspace(t0, t1, 50_001)
         middles = 0.5 * (fine[1:] + fine[:-1])
@@ -74,7 +74,7 @@ def test_means_and_moments_of_a_course_are_exact(seed):
         assert moments[i] == pytest.approx(moment, abs=1e-5)
         assert first[i] == pytest.approx(course.voltage(t0), abs=1e-12)
         assert last[i] == pytest.approx(course.voltage(t1 - 1e-12), abs=1e-9)
-    constant = Course((0.0, 1.0), (0.1, 0.1)).over_steps(edges)
+    constant = Course((0.0, 1.0), (0.1, 0.1)).ends_means_and_moments(edges)
     assert all((part == 0.1).all() for part in constant[:3]) and not constant[3].any()
 
 

@@ -48,8 +48,8 @@ def trajectory_error(system, time, lead=300.0):
     lead in 1/omega, below the resonance, from a flight unless bonded.
     """
     structure, drive = system
-    Omega = 0.985 * averaged.resonance(*system.as_bonded())
-    volts = float(averaged.no_load_speed(*system.as_bonded(), Omega)) * drive.volts(structure)
+    Omega = 0.985 * averaged.bonded_resonance(*system.as_bonded())
+    volts = float(averaged.stationary_voltage(*system.as_bonded(), Omega)) * drive.volts(structure)
     scheme = scheme_from_arguments(structure, None)
     with master(system, scheme, rest(Omega * structure.omega)) as m:
         while m.time * structure.omega < lead or (
