@@ -89,7 +89,7 @@ def held_speeds(
     times, course = [0.0], [first]
     if ramp.spin_up:
         times, course = [0.0, ramp.spin_up * omega], [ramp.low / volts, first]
-    times, course, ends = [*times, ramp.begin * omega], [*course, first], []
+    times, course, ends = [*times, ramp.ramp_start * omega], [*course, first], []
     hold = part * (LONG + LONG_OF_ROTOR / drive.b(structure))
     for voltage in voltages:
         arrival = times[-1] + max(abs(voltage - course[-1]) / rate, 1.0)
