@@ -49,7 +49,7 @@ serve_requests()
 Reader = Callable[..., Any]
 
 
-def reader_memory(file_size: int) -> int:
+def max_reader_memory(file_size: int) -> int:
     """Return how many bytes of memory the reader of a file may use, by the file's size."""
     return MEMORY + MEMORY_PER_BYTE * file_size
 
@@ -72,7 +72,7 @@ def read_in_process(
     seconds = SECONDS + size / BYTES_A_SECOND
     request = {
         **{"reader": f"{reader.__module__}:{reader.__qualname__}", "path": str(whole)},
-        **{"arguments": arguments, "seconds": seconds, "memory": reader_memory(size)},
+        **{"arguments": arguments, "seconds": seconds, "memory": max_reader_memory(size)},
         "room": (NUMBERS if array_bytes is None else array_bytes) + NUMBERS_PER_BYTE * size,
     }
     child = IDLE.pop(os.getpid(), None) if keep_process else None

@@ -88,7 +88,7 @@ def is_in_si(data: xr.Dataset) -> bool:
     return math.isfinite(omega) and not math.isclose(omega, 1.0, rel_tol=1e-9)
 
 
-def shows_ratios(data: xr.Dataset) -> bool:
+def shows_lengths_as_ratios(data: xr.Dataset) -> bool:
     """Return whether lengths are shown as the paper's ratios: of a structure that is not in SI."""
     in_si = is_in_si(data) or math.isnan(omega_of(data))
     return not (in_si or display_units_of(data).length)
@@ -230,17 +230,17 @@ def format_number_and_unit(
     data: xr.Dataset, value: float | xr.DataArray, unit: str, form: str = ".6g"
 ) -> tuple[str, str]:
     """Convert an SI value to a dataset's display unit; return its text and the unit's name."""
-    factor, word = text_scale_of(data, unit)
+    factor, word = display_scale_and_label(data, unit)
     return format(float(value) / factor, form), word
 
 
-def text_scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
+def display_scale_and_label(data: xr.Dataset, unit: str) -> tuple[float, str]:
     """Return divisor and unit as :func:`display_scale_of` does, of ratios no unit.
 
     Where lengths are the paper's ratios, they have none, nor have speeds and accelerations.
     """
     factor, word = display_scale_of(data, unit)
-    is_ratio = word == unit in ("m", "m/s", "m/s2") and shows_ratios(data)
+    is_ratio = word == unit in ("m", "m/s", "m/s2") and shows_lengths_as_ratios(data)
     return factor, "" if word == "1" or is_ratio else word
 
 

@@ -20,7 +20,7 @@ from ..units import (
     format_quantity,
     format_quantity_range,
     parameter_of,
-    shows_ratios,
+    shows_lengths_as_ratios,
     with_units,
 )
 from . import printing
@@ -107,7 +107,7 @@ def attractor_table(data: xr.Dataset, over: str = "") -> Iterator[str]:
     columns = printing.columns_of(rows, names, form=".4g")
     parts = [rows.isel(row=i) for i in range(rows.sizes["row"])]
     columns["largest gap"] = [printing.format_largest_gap(part) for part in parts]
-    in_si = " (SI)" * (not shows_ratios(data))
+    in_si = " (SI)" * (not shows_lengths_as_ratios(data))
     (columns[f"state at phase 0{in_si}"],) = printing.columns_of(rows, "state").values()
     yield from printing.table(columns)
 

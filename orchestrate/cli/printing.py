@@ -160,7 +160,7 @@ def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g"
             title = f"{before or ('frequency' if name == 'eta' else name)} {unit}".rstrip()
             columns[title] = [number for _, number, _ in parts]
             continue
-        factor, word = units.text_scale_of(data, str(array.attrs.get("units", "1")))
+        factor, word = units.display_scale_and_label(data, str(array.attrs.get("units", "1")))
         title = f"{name} {word.replace('SI', '')}".rstrip()
         if "flag_meanings" in array.attrs:
             words = flag_words(array.attrs)
@@ -186,7 +186,7 @@ def impact_lines(data: xr.Dataset) -> Iterator[str]:
     first = int(data.impact_velocity.values.argmax())
     speed = units.format_quantity(data, data.impact_velocity[first], "m/s", ".4g")
     hardest = f"at {time_text(data, float(data.impact_time[first]))}"
-    if not units.shows_ratios(data):
+    if not units.shows_lengths_as_ratios(data):
         hardest = f"{float(data.impulse[first]):.4g} N s {hardest}"
     sticks = int(data.sticks.sum())
     yield f"{count} impacts, the fastest at {speed} ({hardest}); {sticks} begin permanent contact"
@@ -197,7 +197,7 @@ def impact_lines(data: xr.Dataset) -> Iterator[str]:
 
 def time_text(data: xr.Dataset, time: float, form: str = ".4g") -> str:
     """Format a time in display units, as tau where a result in ratios was asked in none."""
-    if units.shows_ratios(data) and not units.display_units_of(data).time:
+    if units.shows_lengths_as_ratios(data) and not units.display_units_of(data).time:
         return f"tau = {time:{form}}"
     return units.format_quantity(data, time, "s", form)
 
@@ -275,7 +275,11 @@ def format_largest_gap(data: xr.Dataset, form: str = ".6g") -> str:
     """Format a response's largest gap over a eta^2, as length too if the box's motion is known."""
     ratio, length = float(data.xi_rel_max), units.unit_of_xi(data)
     parts = [f"xi_Rel = {ratio:{form}}"]
-    if length is not None and math.isfinite(float(length)) and not units.shows_ratios(data):
+    if (
+        length is not None
+        and math.isfinite(float(length))
+        and not units.shows_lengths_as_ratios(data)
+    ):
         parts.append(units.format_quantity(data, ratio * float(length), "m", ".4g"))
     return ", ".join(parts)
 

@@ -150,7 +150,7 @@ def read_tables(path: Path) -> dict[str, Any]:
     except ValueError as error:  # of the syntax, or of the encoding
         reason = str(error).splitlines()[0]
         if line := re.search(r"\(at line (\d+), column", reason):
-            reason = explain_number(text.splitlines()[int(line[1]) - 1]) or reason
+            reason = explain_invalid_number(text.splitlines()[int(line[1]) - 1]) or reason
     except RecursionError:
         reason = "nested too deeply"
     expected = "expected sections and key = value"
@@ -159,7 +159,7 @@ def read_tables(path: Path) -> dict[str, Any]:
     raise InputError(f"{path}: not readable as TOML ({reason}); {expected}")
 
 
-def explain_number(line: str) -> str:
+def explain_invalid_number(line: str) -> str:
     """Return what is wrong with a number that TOML does not know; nothing where it is not that."""
     pair = re.fullmatch(NUMBER, line)
     if pair is None or not (pair["comma"] or pair["unit"]):

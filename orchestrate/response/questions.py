@@ -386,7 +386,7 @@ class Question(Job, ABC):
 
     def __post_init__(self) -> None:
         checked_structure(self.structure)
-        self.check_fields()
+        self.check_and_convert_fields()
 
     def to_answer(self) -> Question:
         """Return the job that answers the question: another one where its arguments make it so."""

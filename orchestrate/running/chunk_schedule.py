@@ -58,7 +58,7 @@ class ChunkSchedule:
         self.guesses: dict[int, Guess] = {}
         done = set(range(len(self.chunks))) if self.is_complete else self.load_stored_chunks()
         self.left = {each.index: each for each in self.chunks if each.index not in done}
-        self._stored_items = sum(map(self.item_count, done))
+        self._stored_items = sum(map(self.chunk_item_count, done))
         self.under_way: set[int] = set()
         self._ends: dict[int, Table] = {}  # last entries of the last chunks that are certain
         self.wasted = 0  # items that were guessed in vain
@@ -94,8 +94,8 @@ class ChunkSchedule:
             )
         except Exception:
             return "not readable"
-        fits = self.job.has_row_per_item(table, self.item_count(number))
-        return "" if fits else f"not of {self.item_count(number)} items"
+        fits = self.job.has_row_per_item(table, self.chunk_item_count(number))
+        return "" if fits else f"not of {self.chunk_item_count(number)} items"
 
     @property
     def is_complete(self) -> bool:
@@ -104,9 +104,9 @@ class ChunkSchedule:
     def items_done(self) -> int:
         """Return how far the progress bar is: items computed, those of guessed chunks included."""
         last = self.job.last_weight - 1 if self.is_complete else 0
-        return self._stored_items + sum(map(self.item_count, self.guesses)) + last
+        return self._stored_items + sum(map(self.chunk_item_count, self.guesses)) + last
 
-    def item_count(self, index: int) -> int:
+    def chunk_item_count(self, index: int) -> int:
         return self.chunks[index].stop - self.chunks[index].start
 
     def make_items_or_finish(self) -> None:
@@ -207,12 +207,12 @@ class ChunkSchedule:
 
     def add_result(self, task: Task, start: bytes, table: Table) -> None:
         index = task.chunk.index
-        assert self.job.has_row_per_item(table, self.item_count(index)), (
+        assert self.job.has_row_per_item(table, self.chunk_item_count(index)), (
             f"{self.job.name}: item_columns"
         )
         self.under_way.discard(index)
         if task.guess:
-            self.wasted += self.item_count(index) if index in self.guesses else 0
+            self.wasted += self.chunk_item_count(index) if index in self.guesses else 0
             self.guesses[index] = Guess(start, last_entries(table))
             self.store.put(~index, {**table, START: np.frombuffer(start, np.uint8)})
         else:
@@ -223,7 +223,7 @@ class ChunkSchedule:
     def store_chunk(self, index: int, table: Table) -> None:
         self.store.put(index, table)
         del self.left[index]
-        self._stored_items += self.item_count(index)
+        self._stored_items += self.chunk_item_count(index)
         if self.job.sequential:
             self._ends.pop(index - 1, None)
             self._ends[index] = last_entries(table)
@@ -239,7 +239,7 @@ class ChunkSchedule:
                 ):
                     self.store_chunk(index, self.stored_guess_start_and_table(index)[1])
                 else:
-                    self.wasted += self.item_count(index)
+                    self.wasted += self.chunk_item_count(index)
                 self.store.drop(~index)
 
     def finish_if_done(self) -> None:

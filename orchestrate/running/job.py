@@ -58,7 +58,7 @@ class Job(ABC):
     item_columns: ClassVar[tuple[str, ...] | None] = None
     item: ClassVar[str] = "item"  # what the progress bar counts
 
-    def check_fields(self) -> None:
+    def check_and_convert_fields(self) -> None:
         """Check the fields whose types have a check, and set them to what it returns."""
         for name, check in checks_by_field(type(self)).items():
             object.__setattr__(self, name, check(name, getattr(self, name)))
@@ -140,10 +140,11 @@ def refuse_unsupported_structure(
     refuse_unsupported(asked, given if given and are_numbers and not structure.bonded else {})
 
 
-def refuse_unsupported(asked: str, given: Mapping[str, Any]) -> None:
-    for name, value in given.items():
+def refuse_unsupported(question: str, parameters: Mapping[str, Any]) -> None:
+    """Raise ``InputError`` for the first parameter that is not 0, false or None."""
+    for name, value in parameters.items():
         if value:
-            text = f"{asked} does not know it yet; expected a question without it"
+            text = f"{question} does not know it yet; expected a question without it"
             raise InputError(f"{name} = {value!r}: {text}")
 
 

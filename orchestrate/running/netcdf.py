@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..lazy import xr
-from ..reader_process import read_in_process, reader_memory
+from ..reader_process import max_reader_memory, read_in_process
 from .array_blocks import block_indices
 
 MAX_LOADED = 2**28  # bytes of numbers that are read whole; more are read when they are used
@@ -36,7 +36,7 @@ def read_dataset(path: Path) -> xr.Dataset:
 
 
 def check_unpacked_size(path: Path, size: int) -> None:
-    most = reader_memory(path.stat().st_size)
+    most = max_reader_memory(path.stat().st_size)
     if size > most:
         raise InputError(f"{path}: unpacks to {size} bytes; expected at most {most}")
 

@@ -252,7 +252,7 @@ def load_result(path: Path, read: Callable[[Path], xr.Dataset] | None = None) ->
     """Return a file's dataset, read in this process; raise ``StoreError`` if damaged (checksum)."""
     check_path_encoding(path)
     try:
-        data = (read or read_result)(path)
+        data = (read or open_unverified_result)(path)
         stored_checksum = data.attrs.pop(ATTRIBUTE, None)
         fits = stored_checksum is None or stored_checksum == checksum(data)
     except Exception as error:
@@ -272,7 +272,7 @@ def load_foreign_result(path: Path) -> xr.Dataset:
     return load_result(path, read_dataset)
 
 
-def read_result(path: Path) -> xr.Dataset:
+def open_unverified_result(path: Path) -> xr.Dataset:
     with small_chunk_cache():
         # what is read of a large one, for the checksum or by a user, does not stay in memory
         data = xr.open_dataset(path, engine="netcdf4", cache=False)

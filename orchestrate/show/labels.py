@@ -17,7 +17,7 @@ from ..units import (
     is_finite_number,
     is_in_si,
     omega_of,
-    shows_ratios,
+    shows_lengths_as_ratios,
 )
 
 UNITS = {"m": "kg", "k": "N/m", "d": "N s/m", "x": "m", "f": "Hz"}  # of both masses' quantities
@@ -184,7 +184,9 @@ def format_excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str,
 def is_papers_amplitude(data: xr.Dataset, known: Mapping[str, float]) -> bool:
     """Return whether the amplitude is 1/eta^2 m, so that displacements are the paper's ratios."""
     eta = known.get("eta", known.get("frequency", math.nan) / omega_of(data))
-    return shows_ratios(data) and math.isclose(known["amplitude"] * eta**2, 1.0, rel_tol=1e-9)
+    return shows_lengths_as_ratios(data) and math.isclose(
+        known["amplitude"] * eta**2, 1.0, rel_tol=1e-9
+    )
 
 
 def format_level(data: xr.Dataset, level: float) -> str:

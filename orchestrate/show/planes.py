@@ -15,7 +15,13 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator
 from ..constants import TURN
 from ..flags import flag_words
 from ..model import Structure
-from ..units import display_scale_of, display_units_of, omega_of, shows_ratios, unit_of_xi
+from ..units import (
+    display_scale_of,
+    display_units_of,
+    omega_of,
+    shows_lengths_as_ratios,
+    unit_of_xi,
+)
 from . import labels
 from .colours import BESIDES_RED, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW
 from .kinds import MORE, draws
@@ -189,7 +195,7 @@ def coordinate_scale(data: xr.Dataset, name: str) -> tuple[float, str]:
     if name == "phase":
         return 1.0, labels.symbol(name)
     factor, word = display_scale_of(data, "m/s" if name.startswith("v") else "m")
-    unit = "" if shows_ratios(data) else labels.typeset_unit(word)
+    unit = "" if shows_lengths_as_ratios(data) else labels.typeset_unit(word)
     words = labels.gap_name(data) if name == "x_rel" else labels.symbol(name).rpartition(" in ")[0]
     return factor, in_unit(words, unit)
 

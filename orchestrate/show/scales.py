@@ -14,7 +14,7 @@ from ..units import (
     display_scale_of,
     display_units_of,
     omega_of,
-    shows_ratios,
+    shows_lengths_as_ratios,
     unit_of_xi,
 )
 from .labels import gap_name, has_frequency_unit, si_prefix, symbol, typeset_unit
@@ -65,7 +65,7 @@ def frequency_scale(data: xr.Dataset) -> tuple[float, str]:
 
 def length_scale(data: xr.Dataset, largest: float, unit: str = "m") -> tuple[float, str]:
     """Return the divisor from m, or m/s, to the display unit, and that unit; none of a ratio."""
-    if shows_ratios(data):
+    if shows_lengths_as_ratios(data):
         return 1.0, ""
     if not display_units_of(data).length:
         factor, prefix = si_prefix(largest)
@@ -89,7 +89,7 @@ def in_unit(words: str, unit: str, space: str = " ") -> str:
 def acceleration_scale(data: xr.Dataset, usual: str = "m/s2") -> tuple[float, str]:
     """Return the divisor from m/s2 to the display unit, and that unit; none of a ratio."""
     word = display_units_of(data).acceleration
-    if shows_ratios(data) and not word:
+    if shows_lengths_as_ratios(data) and not word:
         return 1.0, ""
     word = word or usual
     return FACTORS["acceleration"][word], typeset_unit(word)

@@ -276,7 +276,7 @@ class CosimulateJob(CoupledJob, Question):
 
     def compute_from_all_steps(self, fmus: Fmus, table: Table) -> Table:
         runs = {parts: columns_of_division(table, parts) for parts in self.step_divisions()}
-        times, ended = self.times_reached(runs)
+        times, ended = self.times_and_end_reason(runs)
         times = self.communication_times(self.points)[: self.points * (len(times) - 1) + 1]
         motions, run = [], runs[1]
         with Player(fmus[OSCILLATOR]) as player:
@@ -308,7 +308,7 @@ class CosimulateJob(CoupledJob, Question):
         columns["response"], columns["ended"] = table["response"][:1], np.array([ended])
         return {**columns, **impact_columns(impacts, self.structure)}
 
-    def times_reached(self, runs: Mapping[int, Table]) -> tuple[Floats, str]:
+    def times_and_end_reason(self, runs: Mapping[int, Table]) -> tuple[Floats, str]:
         ends = [np.max(run["nodes"], initial=0.0) for run in runs.values()]
         last, times = min(ends), self.communication_times()
         both = zip(runs.values(), ends, strict=True)

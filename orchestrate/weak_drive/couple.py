@@ -62,7 +62,7 @@ class CoupleJob(MotorJob):
         if self.control is not None:
             return {"verdicts": np.array([], VERDICT)}
         with motor_run_starter(fmus) as start:
-            volts = RampRecord(self, table, True).sense * self.drive.volts(self.structure)
+            volts = RampRecord(self, table, True).rotation_sense * self.drive.volts(self.structure)
             loop = HysteresisLoop(
                 lambda schedule: start(replace(self, schedule=schedule)),
                 self.schedule,
@@ -121,7 +121,7 @@ class CoupleJob(MotorJob):
         columns = ramp_jump_variables(records[0].forward_table(), shown)
         columns |= bracket_variables(every, columns, self.drive.volts(self.structure))
         columns |= self.theory_variables(len(every))
-        for name in MIRRORED & columns.keys() if records[0].sense < 0.0 else ():
+        for name in MIRRORED & columns.keys() if records[0].rotation_sense < 0.0 else ():
             dims, values, attributes = columns[name]
             columns[name] = (dims, np.negative(values), attributes)
         how = [self.explain_decision(*pair) for pair in zip(every, records_of, strict=True)]
@@ -131,8 +131,9 @@ class CoupleJob(MotorJob):
         return jump_labels(directions), columns
 
     def explain_decision(self, jump: Jump | None, record: RampRecord) -> tuple[str, str]:
+        """Return how a jump or none was decided, and why there is none."""
         if jump is not None and jump.outcome == UNDECIDED:
-            volts = record.sense * self.drive.volts(self.structure)
+            volts = record.rotation_sense * self.drive.volts(self.structure)
             low, high = volts * jump.low, volts * jump.high
             return "undecided", (
                 f"undecided between {low:.5g} and {high:.5g} V: voltages held for at most "
@@ -142,7 +143,7 @@ class CoupleJob(MotorJob):
             return "by held voltages", ""
         if self.control is not None:
             return "", "a controller sets the voltage"
-        if not record.legs():
+        if not record.rows_by_leg():
             return "", f"the voltage does not {'rise' if record.up else 'fall'}"
         return "by held voltages", "no jump: held voltages lead back to the same speeds"
 

@@ -166,7 +166,7 @@ class HysteresisLoop:
 
     def decide_jumps(self, record: RampRecord) -> list[Jump]:
         jumps = []
-        for leg in record.legs():
+        for leg in record.rows_by_leg():
             first, last = record.eta0(leg[[0, -1]]).tolist()
             if self.max_hold:
                 jumps += self.find_jumps(
@@ -174,7 +174,7 @@ class HysteresisLoop:
                 )
             else:
                 jumps.append(Jump(UNDECIDED, first, last))
-        return merge_overlapping(jumps, record.direction)
+        return merge_overlapping(jumps, record.voltage_direction)
 
     def find_jumps(self, first: HeldPoint, last: float) -> list[Jump]:
         sign = math.copysign(1.0, last - first.voltage)

@@ -148,7 +148,7 @@ class DriveSide:
         )
 
     @property
-    def links(self) -> tuple[list[tuple[int, Link]], ...]:
+    def numbered_links(self) -> tuple[list[tuple[int, Link]], ...]:
         """Return what is connected: the force on the box, its motion, and forces on halves."""
         return self.forces, self.motions, self.pushes
 
@@ -290,7 +290,7 @@ class Master:
         goes_back = drive.instance.description.has_states
         pair.first_passes = self.scheme.first_passes if goes_back else 1
         pair.halves_discarded = self.scheme.halves_discarded and goes_back
-        for name, links in zip(("force", "motion", "pushes"), drive.links, strict=True):
+        for name, links in zip(("force", "motion", "pushes"), drive.numbered_links, strict=True):
             setattr(pair, name, Links.from_numbered(links))
         names = () if self._reads_recorded_in_python else connection.recorded
         pair.cubic, pair.recorded = connection.cubic, references(drive.instance, names)

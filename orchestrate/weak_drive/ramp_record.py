@@ -34,32 +34,34 @@ class RampRecord:
     up: bool
 
     @property
-    def sense(self) -> float:
+    def rotation_sense(self) -> float:
         return sense_of_rotation(self.table["voltage"])
 
     @property
-    def direction(self) -> float:
+    def voltage_direction(self) -> float:
         """Return the direction of the voltage's size: 1 or -1."""
         return 1.0 if self.up else -1.0
 
     def forward_table(self) -> Table:
         """Return the table of the mirror image of the run, in which the motor turns forward."""
         signed = ("voltage", "speed")
-        return {**self.table, **{name: self.sense * self.table[name] for name in signed}}
+        return {**self.table, **{name: self.rotation_sense * self.table[name] for name in signed}}
 
-    def ramp_rows(self) -> np.ndarray:
-        """Return the rows of the revolutions in which the size of the voltage rises (or falls)."""
-        voltage = self.sense * self.table["voltage"]
-        trend = self.sense * self.direction * self.job.schedule.trend(self.table["time"])
-        return np.flatnonzero((trend > 0.0) & (voltage > 0.0))
-
-    def legs(self) -> list[np.ndarray]:
-        rows = self.ramp_rows()
+    def rows_by_leg(self) -> list[np.ndarray]:
+        """Return rows of revolutions in which the size of the voltage rises (or falls), by legs."""
+        voltage = self.rotation_sense * self.table["voltage"]
+        trend = self.job.schedule.trend(self.table["time"])
+        moves = self.rotation_sense * self.voltage_direction * trend > 0.0
+        rows = np.flatnonzero(moves & (voltage > 0.0))
         return np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1) if rows.size else []
 
     def eta0(self, rows: Any) -> Any:
         """Return the voltage over K omega at the ends of revolutions."""
-        return self.sense * self.table["voltage"][rows] / self.job.drive.volts(self.job.structure)
+        return (
+            self.rotation_sense
+            * self.table["voltage"][rows]
+            / self.job.drive.volts(self.job.structure)
+        )
 
     def step_of_row(self, row: int) -> int:
         return min(
@@ -70,11 +72,11 @@ class RampRecord:
         """Return the rows at which a jump begins, is half done and ends; NaN where it does not."""
         # the jump is from a voltage and the speed before to another one and the speed after
         first, fall = low - before, (low - before) - (high - after)
-        for leg in self.legs():
+        for leg in self.rows_by_leg():
             turn = np.median(np.diff(self.table["time"][leg])) if len(leg) > 1 else math.inf
             b, omega = self.job.drive.b(self.job.structure), self.job.structure.omega
             width = max(4, math.ceil(SMOOTH / (b * omega * turn)))
-            past = self.direction * self.eta0(leg) >= self.direction * low
+            past = self.voltage_direction * self.eta0(leg) >= self.voltage_direction * low
             slips = self.eta0(leg) - np.abs(self.table["speed"][leg]) / omega
             if not past.any() or len(leg) < width:
                 continue

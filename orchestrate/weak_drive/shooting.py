@@ -158,7 +158,10 @@ class Shooter:
         return np.array(values) / self.units
 
     def simulate_at_speed(self, voltage: float, speed: float, time: float) -> Floats:
-        """Simulate for a time at a nearly fixed speed (heavy rotor); return the state."""
+        """Simulate for a time at a nearly fixed speed (heavy rotor); begin periods at its end.
+
+        Return the state there.
+        """
         self.set_start_contact(self.structure.bonded)
         longest = time + (self.turns + 1) * TURN / speed
         own_drive = self.drive
