@@ -220,7 +220,7 @@ class Files:
         if fresh is None:
             from ..running.journal import journal_path  # brings SQLite, which --help does without
 
-            resumed = journal_path(result, anew=True).exists()
+            resumed = journal_path(result, recomputing=True).exists()
             fresh = arguments.force or resumed or not result.exists()
         chosen = str(arguments.read_units()).replace(", ", "-").replace("/", "_")
         if size := arguments.size or "":

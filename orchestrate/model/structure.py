@@ -51,10 +51,10 @@ def with_tabulated_fields(kind: type[Described]) -> type[Described]:
     return kind
 
 
-def check_keywords(given: Mapping[str, Any], *known: str) -> None:
+def check_keywords(keywords: Mapping[str, Any], *known: str) -> None:
     """Raise ``InputError`` for a keyword that is neither known nor a parameter of the contact."""
     names = (*known, *(name for name in STRUCTURE if name not in OF_HALVES))
-    for name in given:
+    for name in keywords:
         if name not in names:
             raise InputError(f"{name}: no parameter here; {expected_one_of(name, names)}")
 

@@ -42,15 +42,17 @@ def block_indices(shape: tuple[int, ...]) -> Iterator[Index]:
 
 
 def lazy_array_of_rows(
-    leading: tuple[int, ...], width: int, read: Callable[[NDArray[np.intp]], NDArray[np.float64]]
+    leading_shape: tuple[int, ...],
+    width: int,
+    read_rows: Callable[[NDArray[np.intp]], NDArray[np.float64]],
 ) -> Any:
-    """Return an xarray variable's data (*leading, width) whose rows ``read`` gives by number."""
+    """Return an xarray variable's data (*leading_shape, width) of ``read_rows``."""
     import_module("xarray")  # whole before its parts: another thread may be importing it
     from xarray.backends import BackendArray
     from xarray.core import indexing
 
     class Rows(BackendArray):
-        shape = (*leading, width)
+        shape = (*leading_shape, width)
         dtype = np.dtype(float)
 
         def __getitem__(self, key: Any) -> Any:
@@ -58,8 +60,8 @@ def lazy_array_of_rows(
             return indexing.explicit_indexing_adapter(key, self.shape, support, self.read)
 
         def read(self, key: Index) -> NDArray[np.float64]:
-            numbers = np.arange(int(np.prod(leading))).reshape(leading)[key[:-1]]
-            values = read(numbers.ravel()).reshape(*numbers.shape, width)
+            numbers = np.arange(int(np.prod(leading_shape))).reshape(leading_shape)[key[:-1]]
+            values = read_rows(numbers.ravel()).reshape(*numbers.shape, width)
             return np.asarray(values[(..., key[-1])])
 
     return indexing.LazilyIndexedArray(Rows())

@@ -27,9 +27,9 @@ ENDINGS = ("", "-wal", "-shm")  # files of a database
 ANEW = "remove it and compute it again"
 
 
-def journal_path(result: Path, anew: bool = False) -> Path:
-    """Return the path of a result file's journal; ``anew``: of the one for computing it again."""
-    return result.with_name(f"{result.name}{'.anew' * anew}.journal")
+def journal_path(result: Path, recomputing: bool = False) -> Path:
+    """Return the path of a result file's journal; ``recomputing``: of the one for ``force``."""
+    return result.with_name(f"{result.name}{'.anew' * recomputing}.journal")
 
 
 def delete_journal_files(path: Path) -> None:

@@ -123,7 +123,7 @@ class DiskStore(Store):
         self._lock = lock_result(path)
         self._journal: Journal | None = None
         try:
-            anew = journal_path(path, anew=True)
+            anew = journal_path(path, recomputing=True)
             if path.exists() and options.force:
                 read_identity(path)  # of another's file there is nothing to replace
                 self._open_journal(anew)
@@ -226,8 +226,8 @@ class DiskStore(Store):
         FINISHED.add(self.path)
         STARTED.discard(self.journal.path)
         self.journal.delete()
-        for anew in (False, True):  # of runs that were killed as they finished
-            delete_journal_files(journal_path(self.path, anew))
+        for recomputing in (False, True):  # of runs that were killed as they finished
+            delete_journal_files(journal_path(self.path, recomputing))
         self._journal = None
         del dataset  # there may be no room for both it and what is read
         self._result = load_result(self.path)

@@ -83,9 +83,9 @@ class SettlingTest:
         return CaptureOutcome(decision, True, crossed, mean * self.omega)
 
 
-def index_of_last_change(beyond: np.ndarray) -> int:
+def index_of_last_change(flags: np.ndarray) -> int:
     """Return the index from which a Boolean array keeps its last value."""
-    changes = np.flatnonzero(beyond[1:] != beyond[:-1])
+    changes = np.flatnonzero(flags[1:] != flags[:-1])
     return int(changes[-1]) + 1 if changes.size else 0
 
 

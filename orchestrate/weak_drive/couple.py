@@ -172,14 +172,14 @@ class CoupleJob(MotorJob):
 
 
 def bracket_variables(
-    jumps: Sequence[Jump | None], shown: Mapping[str, Variable], volts: float
+    jumps: Sequence[Jump | None], ramp_variables: Mapping[str, Variable], volts: float
 ) -> dict[str, Variable]:
     """Build the variables of the voltages at which motions are lost, and of the ramp's lag."""
     lows = np.array([volts * jump.low if jump else math.nan for jump in jumps])
     highs = np.array([volts * jump.high if jump else math.nan for jump in jumps])
     lost = np.array([jump is not None and jump.outcome == LOST for jump in jumps])
     places = np.where(lost, 0.5 * (lows + highs), math.nan)
-    late = shown["ramp_voltage"][1] - places
+    late = ramp_variables["ramp_voltage"][1] - places
     text = "voltage at which the motion is lost, whatever the ramp's rate"
     return {
         "jumps": variable("jump", places, "V", text),

@@ -46,7 +46,7 @@ def measure_grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) ->
     shooter.angle = angle
     master, voltage = shooter.begin_period(unknowns)
     gaps, closing = [math.inf], [math.inf]
-    for _ in range(shooter.count):
+    for _ in range(shooter.period_steps):
         before = master.motion
         master.step(voltage)
         if master.motion.impact_time != before.impact_time:
@@ -111,7 +111,7 @@ class Motion(NamedTuple):
     multipliers: np.ndarray  # floquet multipliers, the largest first
     period: Period
     angle: float  # of the motor where the period begins, rad
-    together: bool  # whether it begins with the masses in contact
+    in_contact: bool  # whether it begins with the masses in contact
 
     @property
     def coordinates(self) -> Floats:
@@ -202,7 +202,9 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         if any(motion.period.sticks for motion in segment.points[-12:]):
             segment.end = UNFINISHED
             return
-        motions = [each for each in segment.points if each.together == segment.points[-1].together]
+        motions = [
+            each for each in segment.points if each.in_contact == segment.points[-1].in_contact
+        ]
         kind, distance = extrapolate_next_grazing(
             self.shooter, [(motion.root.unknowns, motion.angle) for motion in motions]
         )
@@ -218,7 +220,7 @@ def motion_at(shooter: Shooter, root: continuation.Root, direction: Floats) -> M
     along = root if root.tangent @ direction > 0.0 else root.reversed()
     values = shooter.multipliers()
     period = shooter.observe_period(root.unknowns)
-    return Motion(along, shooter.matrix, values, period, shooter.angle, shooter.together)
+    return Motion(along, shooter.jacobian_matrix, values, period, shooter.angle, shooter.in_contact)
 
 
 def find_motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
@@ -230,12 +232,12 @@ def find_motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
 
 def find_doubled_motion(shooter: Shooter, flip: Motion) -> Motion:
     for distance in (3e-3, 1e-3, 3e-4):
-        shooter.set_start_contact(flip.together)
+        shooter.set_start_contact(flip.in_contact)
         shooter.set_revolutions(flip.period.revolutions)
-        shooter.angle, shooter.matrix = flip.angle, flip.matrix
+        shooter.angle, shooter.jacobian_matrix = flip.angle, flip.matrix
         away = np.append(shooter.flip_direction(), [0.0, 0.0])
         guess = flip.root.unknowns + distance * away
-        shooter.set_revolutions(2 * shooter.turns)
+        shooter.set_revolutions(2 * shooter.revolutions)
         with contextlib.suppress(continuation.NoConvergenceError):
             root = continuation.newton_correct(shooter, guess, away, max_iterations=ITERATIONS)
             return motion_at(shooter, root, away)
@@ -243,27 +245,27 @@ def find_doubled_motion(shooter: Shooter, flip: Motion) -> Motion:
 
 
 def begin_far_from_impacts(shooter: Shooter, motion: Motion) -> Motion:
-    """Return a motion begun far from impacts: the same, or begun ``period.clear`` steps later."""
+    """Return a motion begun far from impacts: the same, or begun later."""
     # a motion that begins with an impact has no derivative
-    period, together = motion.period, motion.period.together
-    if period.share > 0.3 and together == motion.together:
+    period, in_contact = motion.period, motion.period.in_contact
+    if period.start_clearance > 0.3 and in_contact == motion.in_contact:
         return motion
     root = motion.root
-    unknowns = shooter.shift_start(root.unknowns, period.clear, together)
+    unknowns = shooter.shift_start(root.unknowns, period.clearest_step, in_contact)
     matrix = shooter.compute_jacobian(unknowns)
     direction = np.append(np.zeros(shooter.size), root.tangent[-2:])  # of voltage and speed
     tangent = continuation.unit_tangent(np.vstack([matrix, direction]))
     moved = replace(root, unknowns=unknowns, tangent=tangent)
     return motion._replace(
-        root=moved, matrix=matrix, angle=shooter.angle, together=shooter.together
+        root=moved, matrix=matrix, angle=shooter.angle, in_contact=shooter.in_contact
     )
 
 
 def half_period_change(shooter: Shooter, root: continuation.Root) -> Floats:
     """Return how the state changes over half the period; 0 for an odd one."""
-    if shooter.turns % 2:
+    if shooter.revolutions % 2:
         return np.zeros(1)
-    return shooter.state_change_after(root.unknowns, shooter.turns // 2)
+    return shooter.state_change_after(root.unknowns, shooter.revolutions // 2)
 
 
 def distance_between(first: Motion, second: Motion) -> float:

@@ -40,8 +40,8 @@ def growth_rate(run: MotorRun, voltage: float, speed: float) -> float:
     unknowns = np.append(shooter.scaled_state(run.master), ends)
     try:
         period = shooter.observe_period(unknowns)
-        if period.share < CLEAR or period.together != shooter.together:
-            unknowns = shooter.shift_start(unknowns, period.clear, period.together)
+        if period.start_clearance < CLEAR or period.in_contact != shooter.in_contact:
+            unknowns = shooter.shift_start(unknowns, period.clearest_step, period.in_contact)
         for turns in TURNS:
             shooter.set_revolutions(turns)
             if np.abs(shooter.residual(unknowns)).max() < NEAR:

@@ -111,10 +111,10 @@ class HysteresisLoop:
         self.left_out: set[float] = set()  # voltages at which a motion does not settle again
         self.spent = 0.0  # s, for which motions of a ramp were held on
 
-    def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
+    def add_checkpoints(self, table: Table, chunk_size: int, step_count: int) -> None:
         for i in range(len(table["master_memory"])):
             state = select_state(table, slice(i, i + 1))
-            self.checkpoints[min((i + 1) * every, steps)] = state
+            self.checkpoints[min((i + 1) * chunk_size, step_count)] = state
 
     def ramp_state_before(self, step: int) -> Table | None:
         """Return the ramp's state before a step, from a checkpoint; None at the start."""

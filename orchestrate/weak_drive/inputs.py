@@ -66,8 +66,11 @@ class Inputs:
         values = {name: one.voltage(0.0) for name, one in [*self.held, *self.cubics]}
         return {name: values.get(name, 0.0) for name in self.names}
 
-    def rows_over_steps(self, edges: Floats, width: int = 0, earlier: int = 0) -> Floats:
-        """Return inputs of steps between edges (a supply's mean), with ends if ``width``."""
+    def rows_over_steps(self, edges: Floats, width: int = 0, skipped: int = 0) -> Floats:
+        """Return inputs of steps between edges but the first ones, with ends if ``width``.
+
+        Of a supply it is the mean of what there is.
+        """
         count = len(self.names)
         h, rows = np.diff(edges), np.zeros((len(edges) - 1, max(width, count)))
         ends = rows[:, count:] if width > count else np.zeros((len(h), count))
@@ -85,7 +88,7 @@ class Inputs:
             ends[:, place : place + 4] = np.transpose(end_derivatives(tuple(cubics.T), h))
         if isinstance(self.control, Supply):
             rows[:, self.controlled] = self.control.course.ends_means_and_moments(edges)[2]
-        return rows[earlier:]
+        return rows[skipped:]
 
     def run_master(self, master: Master, steps: range, h: float, first: int = 0) -> Record:
         """Run both FMUs over some steps of one length, which all have from the first one on."""

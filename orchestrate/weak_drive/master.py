@@ -231,7 +231,7 @@ class Master:
     def run_controlled(
         self, inputs: Iterable[Sequence[float]], count: int, h: float | None = None
     ) -> Record:
-        """Run intervals whose inputs are asked for as each begins; fewer if :attr:`ended`."""
+        """Run intervals whose inputs are asked for as each begins; fewer if an FMU ends the run."""
         return self._run_pieces((np.array([row], dtype=float) for row in inputs), count, h)
 
     def _run_pieces(

@@ -112,9 +112,11 @@ def jump_labels(directions: Sequence[str]) -> list[str]:
     return labels
 
 
-def ramp_jump_variables(table: Table, shown: Sequence[Sequence[float]]) -> dict[str, Variable]:
+def ramp_jump_variables(
+    table: Table, rows_by_jump: Sequence[Sequence[float]]
+) -> dict[str, Variable]:
     """Build the variables of what a record shows at jumps; NaN where a row is NaN."""
-    rows = np.array(shown, dtype=float).reshape(-1, len(DONE)).T
+    rows = np.array(rows_by_jump, dtype=float).reshape(-1, len(DONE)).T
     numbers = np.arange(len(table["time"]))
     before, here, after = (
         {name: np.interp(at, numbers, table[name]) for name in COLUMNS_SHOWN} for at in rows

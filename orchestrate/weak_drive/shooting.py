@@ -37,11 +37,11 @@ class Period(NamedTuple):
     amplitude: float  # half the range of x1, m
     impacts: int
     revolutions: int
-    # steps from the start to where the gap is widest, or with `together` the masses are pressed
+    # steps from the start to where the gap is widest, or with `in_contact` the masses are pressed
     # hardest
-    clear: int
-    share: float  # the gap at the start over the widest one, or that of the forces; 1 where bonded
-    together: bool = False  # whether the period of a preloaded structure is to begin in contact
+    clearest_step: int
+    start_clearance: float  # gap (or force) at the start over the widest (largest); 1 if bonded
+    in_contact: bool = False  # whether the period of a preloaded structure is to begin in contact
     # whether the masses of a preloaded structure are in contact at a communication point
     sticks: bool = False
 
@@ -81,7 +81,7 @@ class Shooter:
         self.fmus, self.structure = fmus, structure
         self.halves = oscillator_start_values(structure)
         self.set_drive(drive)
-        self.turns, self.count, self.angle = revolutions, revolutions * steps, 0.0
+        self.revolutions, self.period_steps, self.angle = revolutions, revolutions * steps, 0.0
         self.master: Master | None = None  # of both FMUs, from the first start on
         self.volts, self.length = drive.volts(structure), length
         self.set_start_contact(structure.bonded)
@@ -89,15 +89,15 @@ class Shooter:
     def set_drive(self, drive: Drive) -> None:
         self.drive, self.parameters = drive, drive.parameters()
 
-    def set_start_contact(self, together: bool) -> None:
-        self.together = together
+    def set_start_contact(self, in_contact: bool) -> None:
+        self.in_contact = in_contact
         structure, drive, length = self.structure, self.drive, self.length
         omega = structure.omega
-        masses = ("x1", "v1") if together else ("x1", "v1", "x2", "v2")
+        masses = ("x1", "v1") if in_contact else ("x1", "v1", "x2", "v2")
         self.names: tuple[str, ...] = (*masses, "box_position", "box_velocity", "speed")
         rest = dict(zip(("x1", "x2"), structure.at_rest, strict=True))
         # where the values stand in a row of the master, and what they are counted from
-        self.places = [(COLUMNS.index(name), rest.get(name, 0.0)) for name in self.names]
+        self.columns_and_rests = [(COLUMNS.index(name), rest.get(name, 0.0)) for name in self.names]
         units = {"x1": length, "x2": length, "box_position": length, "speed": omega}
         units["motor_current"] = drive.volts(structure) / drive.armature_resistance
         if drive.armature_inductance > 0.0:
@@ -105,21 +105,24 @@ class Shooter:
         self.units = np.array([units.get(name, length * omega) for name in self.names])
         self.size = len(self.names)
         self.scale: Floats = np.ones(self.size + 2)
-        self.matrix: Floats = np.empty((0, 0))
+        self.jacobian_matrix: Floats = np.empty((0, 0))
         self._last: tuple[Floats, Floats] | None = None
 
     def set_revolutions(self, revolutions: int) -> None:
-        self.turns, self.count = revolutions, self.count // self.turns * revolutions
-        self.matrix, self._last = np.empty((0, 0)), None
+        self.revolutions, self.period_steps = (
+            revolutions,
+            self.period_steps // self.revolutions * revolutions,
+        )
+        self.jacobian_matrix, self._last = np.empty((0, 0)), None
 
     def state_change_after(self, unknowns: Floats, revolutions: int) -> Floats:
-        turns, matrix, last = self.turns, self.matrix, self._last
+        turns, matrix, last = self.revolutions, self.jacobian_matrix, self._last
         self.set_revolutions(revolutions)
         try:
             return self.shoot(unknowns).end[: self.size] - unknowns[: self.size]
         finally:
             self.set_revolutions(turns)
-            self.matrix, self._last = matrix, last
+            self.jacobian_matrix, self._last = matrix, last
 
     # -- both FMUs over a period --
 
@@ -128,7 +131,7 @@ class Shooter:
         oscillator.reset()
         shaker.reset()
         values = (state * self.units).tolist()
-        count = 2 if self.together else 4  # of the values that are the masses'
+        count = 2 if self.in_contact else 4  # of the values that are the masses'
         masses = values[:count] * (4 // count)
         more = {"angle_start": self.angle, "voltage": voltage}
         oscillator.initialize(**self.halves, **dict(zip(MASSES, masses, strict=True)))
@@ -148,11 +151,11 @@ class Shooter:
     def begin_period(self, unknowns: Floats) -> tuple[Master, float]:
         """Initialise both FMUs at a period's start; return master and voltage, V."""
         voltage = float(unknowns[-2]) * self.volts
-        period = self.turns * TURN / (float(unknowns[-1]) * self.structure.omega)
-        return self.start_master(unknowns[:-2], voltage, period / self.count), voltage
+        period = self.revolutions * TURN / (float(unknowns[-1]) * self.structure.omega)
+        return self.start_master(unknowns[:-2], voltage, period / self.period_steps), voltage
 
     def scaled_state(self, master: Master) -> Floats:
-        values = [master.row[place] - rest for place, rest in self.places]
+        values = [master.row[place] - rest for place, rest in self.columns_and_rests]
         if "motor_current" in self.names:
             values += self.fmus[1].get("motor_current")
         return np.array(values) / self.units
@@ -163,7 +166,7 @@ class Shooter:
         Return the state there.
         """
         self.set_start_contact(self.structure.bonded)
-        longest = time + (self.turns + 1) * TURN / speed
+        longest = time + (self.revolutions + 1) * TURN / speed
         own_drive = self.drive
         # a rotor that keeps its speed
         self.set_drive(own_drive.replace(rotor_inertia=1e6 * own_drive.rotor_inertia))
@@ -175,69 +178,72 @@ class Shooter:
         try:
             master = self.start_master(state, voltage, 0.1 / self.structure.omega)
             master.run(np.full(max(0, round(time / master.scheme.h) - 1), voltage))
-            while master.time < time or (self._in_contact(master) and master.time < longest):
+            while master.time < time or (self._is_touching(master) and master.time < longest):
                 master.step(voltage)
             if self.structure.preload > 0.0:  # once more round, to where a period is best begun
-                h = self.turns * TURN / speed / self.count
-                kept = master.run(np.full(self.count, voltage), h=h).after
-                master.run(np.full(1 + self.find_best_start(kept)[0], voltage), h=h)
+                h = self.revolutions * TURN / speed / self.period_steps
+                record = master.run(np.full(self.period_steps, voltage), h=h).after
+                master.run(np.full(1 + self.find_best_start(record)[0], voltage), h=h)
         finally:
             self.set_drive(own_drive)
         self.angle = master["angle"] % TURN
-        self.set_start_contact(self._in_contact(master) or self.structure.bonded)
+        self.set_start_contact(self._is_touching(master) or self.structure.bonded)
         return self.scaled_state(master)
 
-    def _in_contact(self, master: Master) -> bool:
+    def _is_touching(self, master: Master) -> bool:
         return not self.structure.bonded and master.motion.x_rel == 0.0
 
     def shoot(self, unknowns: Floats) -> Shot:
         try:
             master, voltage = self.begin_period(unknowns)
-            kept = master.run(np.full(self.count, voltage)).after
+            record = master.run(np.full(self.period_steps, voltage)).after
         except FmuError as error:
             raise NoConvergenceError(str(error)) from None
-        turned = master["angle"] - self.angle - self.turns * TURN
+        turned = master["angle"] - self.angle - self.revolutions * TURN
         end = np.append(self.scaled_state(master), turned)
-        if self.together and master.motion.x_rel > 0.0:
+        if self.in_contact and master.motion.x_rel > 0.0:
             raise NoConvergenceError("the masses are apart at the end of a period")
-        contact = bool((kept["x_rel"] == 0.0).any())
+        contact = bool((record["x_rel"] == 0.0).any())
         return Shot(end, int(master["impacts"]), contact)
 
     def observe_period(self, unknowns: Floats) -> Period:
         """Simulate one period; return its amplitude, impacts and best start."""
         master, voltage = self.begin_period(unknowns)
-        record = master.run(np.full(self.count, voltage))
+        record = master.run(np.full(self.period_steps, voltage))
         reached = range_of_mass_1(self.structure, record)
         amplitude = 0.5 * float(reached.high.max() - reached.low.min())
         return Period(
-            amplitude, int(master["impacts"]), self.turns, *self.find_best_start(record.before)
+            amplitude,
+            int(master["impacts"]),
+            self.revolutions,
+            *self.find_best_start(record.before),
         )
 
-    def find_best_start(self, kept: Record) -> tuple[int, float, bool, bool]:
-        """Find the step farthest from impacts; return a Period's clear, share, together, sticks."""
-        sizes = kept["x_rel"]
-        together, sticks = self.together and not sizes.any(), False
+    def find_best_start(self, record: Record) -> tuple[int, float, bool, bool]:
+        """Find the step farthest from impacts; return a Period's last four fields."""
+        sizes = record["x_rel"]
+        in_contact, sticks = self.in_contact and not sizes.any(), False
         if self.structure.preload > 0.0:
             sticks = bool((sizes == 0.0).any())
             s = self.structure
-            x1, v1, x2, v2, gap = (kept[name] for name in ("x1", "v1", "x2", "v2", "x_rel"))
+            x1, v1, x2, v2, gap = (record[name] for name in ("x1", "v1", "x2", "v2", "x_rel"))
             parting = (s.k1 * x1 + s.d1 * v1) / s.m1 - (s.k2 * x2 + s.d2 * v2) / s.m2
             touching = (gap == 0.0) & (v1 == v2)
             inside = touching & np.roll(touching, 1) & np.roll(touching, -1)
             force = -parting * s.m1 * s.m2 / (s.m1 + s.m2)
             forces = np.where(inside, np.maximum(force, 0.0), 0.0)
-            together = together or bool(forces.any())
-            sizes = forces if together else sizes
+            in_contact = in_contact or bool(forces.any())
+            sizes = forces if in_contact else sizes
         clear = int(np.argmax(sizes))
         share = float(sizes[0] / sizes[clear]) if sizes[clear] > 0.0 else 1.0
-        return clear, share, together, sticks
+        return clear, share, in_contact, sticks
 
-    def shift_start(self, unknowns: Floats, steps: int, together: bool) -> Floats:
+    def shift_start(self, unknowns: Floats, steps: int, in_contact: bool) -> Floats:
         """Shift the period's start by some steps; return the unknowns there."""
         master, voltage = self.begin_period(unknowns)
         master.run(np.full(steps, voltage))
         self.angle = master["angle"] % TURN
-        self.set_start_contact(together)
+        self.set_start_contact(in_contact)
         return np.append(self.scaled_state(master), unknowns[-2:])
 
     # -- the equations --
@@ -252,20 +258,20 @@ class Shooter:
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
         """Return the Jacobian by differences, or updated by Broyden's secant rule."""
-        if at_root or not self.matrix.size:
+        if at_root or not self.jacobian_matrix.size:
             return self.compute_jacobian(unknowns)
         residual = self.residual(unknowns)
         if self._last is not None:
             change = unknowns - self._last[0]
             square = float(change @ change)
             if square > 0.0:
-                missed = residual - self._last[1] - self.matrix @ change
-                self.matrix = self.matrix + np.outer(missed, change) / square
+                missed = residual - self._last[1] - self.jacobian_matrix @ change
+                self.jacobian_matrix = self.jacobian_matrix + np.outer(missed, change) / square
         self._last = unknowns.copy(), residual
-        return self.matrix
+        return self.jacobian_matrix
 
     def set_root_jacobian(self, root: Floats, matrix: Floats) -> None:
-        self.matrix, self._last = matrix, (root, np.zeros(self.size + 1))
+        self.jacobian_matrix, self._last = matrix, (root, np.zeros(self.size + 1))
 
     def compute_jacobian(self, unknowns: Floats) -> Floats:
         base = self.shoot(unknowns)
@@ -273,10 +279,10 @@ class Shooter:
             [self.jacobian_column(unknowns, i, base) for i in range(len(unknowns))], axis=1
         )
         matrix[: self.size, : self.size] -= np.eye(self.size)
-        self.matrix, residual = matrix, base.end.copy()
+        self.jacobian_matrix, residual = matrix, base.end.copy()
         residual[: self.size] -= unknowns[: self.size]
         self._last = unknowns.copy(), residual
-        return self.matrix
+        return self.jacobian_matrix
 
     def jacobian_column(self, unknowns: Floats, which: int, base: Shot) -> Floats:
         known: dict[float, Shot] = {0.0: base}
@@ -306,8 +312,8 @@ class Shooter:
 
     def return_map_derivative(self) -> Floats:
         count = self.size
-        flow = self.matrix[:, :count] + np.eye(count + 1, count)
-        drift = self.matrix[:, -1]  # a longer period is a slower mean speed
+        flow = self.jacobian_matrix[:, :count] + np.eye(count + 1, count)
+        drift = self.jacobian_matrix[:, -1]  # a longer period is a slower mean speed
         return np.asarray(flow[:count] - np.outer(drift[:count], flow[count]) / drift[count])
 
     def flip_direction(self) -> Floats:

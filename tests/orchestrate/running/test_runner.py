@@ -104,7 +104,7 @@ def test_force_never_reads_a_journal_and_an_older_result_stays(
     if stored:
         compute_dataset(JOB, {"store": path}, find)
     interrupted(monkeypatch, JOB, {"store": path, "force": stored}, find, 7)
-    place = journal_path(path, anew=stored)
+    place = journal_path(path, recomputing=stored)
     if damage == "noise":
         place.write_bytes(b"noise" * 1000)
     elif damage:

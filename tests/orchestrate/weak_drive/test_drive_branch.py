@@ -49,7 +49,7 @@ def whole_state(system, motion, length):
     """The state at the begin of a motion's period as :mod:`.monolithic` has it."""
     unit = length * system.structure.omega
     x1, v1, *box = motion.root.unknowns[:-2]
-    x2, v2 = (x1, v1) if motion.together else box[:2]
+    x2, v2 = (x1, v1) if motion.in_contact else box[:2]
     y, v, w = motion.root.unknowns[-5:-2]
     rest_1, rest_2 = system.structure.at_rest
     masses = [x1 * length + rest_1, v1 * unit, x2 * length + rest_2, v2 * unit]
@@ -95,7 +95,7 @@ def test_a_pressed_structure_moves_as_the_bonded_one_until_it_parts():
     assert places[shut, 0] == pytest.approx(theory[shut], abs=2e-4)
     assert theory[-1] - places[-1, 0] > 8e-4
     for motion in (motions[0], motions[-1]):
-        assert motion.together
+        assert motion.in_contact
         assert_repeats(PRESSED, motion, length)
     assert_held(PRESSED, next(motion for motion in motions if motion.period.impacts > 20))
 
@@ -105,7 +105,7 @@ def test_with_a_gap():
     (leg, *_), length = branch_of(OPEN, 40, (0.975, 0.98))
     last = leg.points[-1]
     assert leg.end == "limit" and last.period.impacts == last.period.revolutions == 1
-    assert not last.together
+    assert not last.in_contact
     assert_repeats(OPEN, last, length)
     assert_held(OPEN, last)
 
