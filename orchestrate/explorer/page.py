@@ -184,7 +184,7 @@ def drive_data(step: float = 0.1) -> dict[str, Any]:
     force, motion = (
         Links.from_numbered([(i, MOTOR.links[n]) for i, n in enumerate(o)]) for o in (FORCE, BOX)
     )
-    pair = Pair(force=force, motion=motion, cubic=MOTOR.cubic, stride=len(MOTOR.inputs))
+    pair = Pair(force=force, motion=motion, cubic=MOTOR.first_cubic, stride=len(MOTOR.inputs))
     for name in ("tolerance", "easy", "halvings", "first_passes"):
         setattr(pair, name, getattr(scheme, name))
     for side, known in names.items():

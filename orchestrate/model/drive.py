@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING
 from ..errors import InputError
 from .conversions import damping_from_ratio
 from .described import Described
-from .ranges import DRIVE, RATIO_QUANTITIES, checked_range, construct_or_explain, exact_inverse
+from .ranges import (
+    DRIVE,
+    RATIO_QUANTITIES,
+    checked_range,
+    construct_or_explain,
+    refine_to_exact_inverse,
+)
 from .structure import Structure
 
 if TYPE_CHECKING:
@@ -230,7 +236,7 @@ class Drive(Described):
         """Return the empty box's natural frequency over the structure's omega."""
         omega, mass = structure.omega, self.box_mass
         guess = math.sqrt(self.box_stiffness / mass) / omega
-        return exact_inverse(
+        return refine_to_exact_inverse(
             guess, lambda ratio: suspension_stiffness(ratio, omega, mass), self.box_stiffness
         )
 
@@ -238,7 +244,7 @@ class Drive(Described):
         """Return the box's damping ratio, c_b/(2 omega M_t)."""
         omega, mass = structure.omega, self.box_mass
         guess = self.box_damping / (2.0 * omega * mass)
-        return exact_inverse(
+        return refine_to_exact_inverse(
             guess, lambda ratio: damping_from_ratio(ratio, omega, mass), self.box_damping
         )
 

@@ -142,7 +142,7 @@ class Section:
         except InputError as error:
             raise InputError(f"{self.path}: {self.name}.{error}") from None
 
-    def numbers(self, keys: Collection[str]) -> dict[str, float]:
+    def present_numbers(self, keys: Collection[str]) -> dict[str, float]:
         return {key: self.number(key) for key in self.present_keys(keys)}
 
     def rad_s(self, key: str) -> float:
@@ -163,7 +163,7 @@ def read_structure(section: Section) -> Structure:
         own = {OF_ONE_MASS.get(key, key): value for key, value in section.values.items()}
         section = dataclasses.replace(section, values=own)
     section.allow_only(*COMMON_KEYS, "preload", *MECHANICS, *MODAL_KEYS, *RATIO_KEYS)
-    values: dict[str, Any] = section.numbers(COMMON_NUMBERS)
+    values: dict[str, Any] = section.present_numbers(COMMON_NUMBERS)
     if section.at_most_one(("clearance", "preload")) == "preload":
         values["clearance"] = -section.number("preload")
     values |= {name: section.flag(name) for name in FLAGS if name in section.values}
@@ -173,16 +173,16 @@ def read_structure(section: Section) -> Structure:
             for key in section.present_keys(("m2", "f2_hz", "zeta2")):
                 raise section.input_error(key, "mass 2 is a wall; expected it left out")
         section.require_all(("f1_hz", "zeta1") if wall else ("m1", "m2", *MODAL_KEYS))
-        values |= section.numbers(("m1", "m2", *MODAL_KEYS))
+        values |= section.present_numbers(("m1", "m2", *MODAL_KEYS))
         values = {key.removesuffix("_hz"): value for key, value in values.items()}
         construct = Structure().replace if wall else Structure.from_halves
         return section.construct(lambda: construct(**values))
     if not section.uses_second_form(MECHANICS[1:], RATIO_KEYS):
-        values |= section.numbers(MECHANICS)
+        values |= section.present_numbers(MECHANICS)
         return section.construct(lambda: Structure(**values))
     if section.uses_second_form(("D",), ("D1", "D2")):
         section.require_all(("D1", "D2"))
-    values |= section.numbers(("m1", "mu", "kappa", "D", "D1", "D2"))
+    values |= section.present_numbers(("m1", "mu", "kappa", "D", "D1", "D2"))
     omega = section.at_most_one(OMEGAS)
     if omega:
         values["omega"] = section.rad_s(omega)
@@ -193,7 +193,7 @@ def read_excitation(section: Section, structure: Structure | None) -> Excitation
     section.allow_only(*FREQUENCIES, *AMPLITUDES, "phase", *PUSHES)
     key = section.exactly_one(FREQUENCIES)
     amplitude_key = section.at_most_one(AMPLITUDES)
-    more = section.numbers(("phase", *PUSHES))
+    more = section.present_numbers(("phase", *PUSHES))
     if key == "eta":
         eta = section.number("eta")
         if structure is None:
@@ -221,18 +221,18 @@ def read_drive(motor: Section, box: Section, structure: Structure | None) -> Dri
         raise InputError(f"{box.path}: [box] with a {form} [motor]: expected {kind}")
     if not by_numbers:
         box.require_all(SI_BOX)
-        return read_si_drive(motor, box.numbers(SI_BOX))
+        return read_si_drive(motor, box.present_numbers(SI_BOX))
     motor.require_all(MOTOR_NUMBERS)
     box.require_all(BOX_NUMBERS)
     if structure is None:
         raise motor.input_error("beta", "it refers to a structure; expected a section [structure]")
-    numbers = {**motor.numbers(MOTOR_NUMBERS), **box.numbers(BOX_NUMBERS)}
+    numbers = {**motor.present_numbers(MOTOR_NUMBERS), **box.present_numbers(BOX_NUMBERS)}
     return motor.construct(lambda: Drive.nondimensional(**numbers, structure=structure))
 
 
 def read_shaker(section: Section) -> Shaker:
     section.allow_only(*SHAKER_SI, *SHAKER_COMMON, "current_control", *DATASHEET)
-    values: dict[str, Any] = section.numbers((*SHAKER_SI, *SHAKER_COMMON, *DATASHEET))
+    values: dict[str, Any] = section.present_numbers((*SHAKER_SI, *SHAKER_COMMON, *DATASHEET))
     if "current_control" in section.values:
         values |= {"current_control": section.flag("current_control")}
     section.require_all(("force_factor", "coil_resistance"))
@@ -259,12 +259,12 @@ def check_m1_given(structure: Section, motor: Section) -> None:
 
 
 def read_si_drive(motor: Section, box: dict[str, float]) -> Drive:
-    values = {**motor.numbers(SI_MOTOR), **box}
+    values = {**motor.present_numbers(SI_MOTOR), **box}
     if not motor.uses_second_form(TORQUE_LINE_KEYS, DATASHEET_KEYS):
         motor.require_all([name for name in SI_MOTOR if name != "armature_inductance"])
         return motor.construct(lambda: Drive(**values))
     motor.require_all(("rated_voltage", "stall_torque", "unbalance_mass", "unbalance_radius"))
     speed = motor.rad_s(motor.exactly_one(SPEEDS))
     motor.exactly_one(("rotor_inertia", "mechanical_time_constant"))
-    values |= motor.numbers(("rated_voltage", "stall_torque", "mechanical_time_constant"))
+    values |= motor.present_numbers(("rated_voltage", "stall_torque", "mechanical_time_constant"))
     return motor.construct(lambda: Drive.from_datasheet(**values, no_load_speed=speed))

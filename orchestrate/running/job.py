@@ -133,11 +133,11 @@ class Job(ABC):
 
 
 def refuse_unsupported_structure(
-    asked: str, structure: Any, supported: tuple[str, ...] = ()
+    question: str, structure: Any, supported: tuple[str, ...] = ()
 ) -> None:
     given = {name: getattr(structure, name, None) for name in FAMILY if name not in supported}
     are_numbers = all(isinstance(value, (bool, float)) for value in given.values())
-    refuse_unsupported(asked, given if given and are_numbers and not structure.bonded else {})
+    refuse_unsupported(question, given if given and are_numbers and not structure.bonded else {})
 
 
 def refuse_unsupported(question: str, parameters: Mapping[str, Any]) -> None:
@@ -162,11 +162,11 @@ def to_json_data(value: Any) -> Any:
     if isinstance(value, np.generic):
         return value.item()
     if isinstance(value, (tuple, list, np.ndarray)):
-        return to_json_list(value)
+        return to_json_list_or_summary(value)
     return value
 
 
-def to_json_list(values: Any) -> Any:
+def to_json_list_or_summary(values: Any) -> Any:
     parts = list(values)
     if len(parts) <= MAX_LISTED or not all(
         isinstance(part, (int, float, np.number)) for part in parts

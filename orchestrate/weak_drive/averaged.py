@@ -82,7 +82,7 @@ def bonded_resonance(structure: Structure, drive: Drive) -> float:
     return float(np.abs(free_vibration_roots(structure, drive)).max())
 
 
-def resonance_half_width(structure: Structure, drive: Drive) -> float:
+def bonded_resonance_half_width(structure: Structure, drive: Drive) -> float:
     roots = free_vibration_roots(structure, drive)
     return float(-roots[np.argmax(np.abs(roots))].real)
 

@@ -51,7 +51,7 @@ class Connection:
     inputs: tuple[str, ...] = ()  # its others, by its names
     outputs: tuple[str, ...] = ()
     recorded: tuple[str, ...] = ()  # what is read at the end of each interval
-    cubic: int = -1  # place among its inputs from which on they are cubics; -1: all are held
+    first_cubic: int = -1  # place among its inputs from which on they are cubics; -1: all are held
 
     @property
     def connected_pushes(self) -> tuple[str, ...]:

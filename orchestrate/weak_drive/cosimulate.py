@@ -274,12 +274,12 @@ def checked_recorded_names(record: Any, drive: Description) -> tuple[str, ...]:
 
 def warn_of_run(run: xr.Dataset, links: Container[str], estimate: bool) -> None:
     repeat_drive_warnings(run)
-    missing = [name for name in MOTION if name not in links]
-    missing = missing if len(missing) < len(MOTION) else []
-    if missing:
-        warn_of_long_step(run, missing)
+    unconnected = [name for name in MOTION if name not in links]
+    unconnected = unconnected if len(unconnected) < len(MOTION) else []
+    if unconnected:
+        warn_of_long_step(run, unconnected)
     if estimate:
-        warn_of_coupling_error(run, missing)
+        warn_of_coupling_error(run, unconnected)
 
 
 def repeat_drive_warnings(run: xr.Dataset) -> None:
@@ -291,23 +291,23 @@ def repeat_drive_warnings(run: xr.Dataset) -> None:
         warnings.warn(f"{ended}; the result ends there", stacklevel=4)
 
 
-def warn_of_long_step(run: xr.Dataset, missing: Sequence[str]) -> None:
+def warn_of_long_step(run: xr.Dataset, unconnected: Sequence[str]) -> None:
     """Warn where the drive is not seen to follow a force as a mass does within a step."""
     share = getattr(run, "attrs", {}).get("response_in_a_step", math.nan)
     if share < RESOLVED:
         text = f"a force accelerates the box by {share:.2g} in a step, where it does by 1 at once: "
         text += "the step is too long for the drive's own motion"
-        warnings.warn(f"{text}; reduce it or connect {', '.join(missing)}", stacklevel=4)
+        warnings.warn(f"{text}; reduce it or connect {', '.join(unconnected)}", stacklevel=4)
 
 
-def warn_of_coupling_error(run: xr.Dataset, missing: Sequence[str]) -> None:
-    """Warn where the coupling's error may hide or make impacts; ``missing`` could be connected."""
+def warn_of_coupling_error(run: xr.Dataset, unconnected: Sequence[str]) -> None:
+    """Warn where the coupling's error may hide or make impacts, and what to connect."""
     if "coupling_error" not in getattr(run, "data_vars", ()):  # a job alone
         return
     size = max(float(abs(run[name]).max()) for name in ("x1", "x2"))
     error = float(run.coupling_error.max())
     if error > NOTICED * size:
-        more = f" and connect {', '.join(missing)} if the drive has it" if missing else ""
+        more = f" and connect {', '.join(unconnected)} if the drive has it" if unconnected else ""
         text = f"coupling error {error:.2g} m of displacements up to {size:.2g} m: "
         text += "it diverges: look at units" if error > size else "impacts may be missed or added"
         warnings.warn(f"{text}; reduce the step{more}", stacklevel=4)

@@ -219,7 +219,7 @@ class CosimulateJob(CoupledJob, Question):
     def initialize_and_connect(self, drive: Instance, inputs: Inputs) -> Connection:
         drive.initialize(**dict(self.start_values), **inputs.start_values())
         links = self.links_to(drive.description)
-        return Connection(links, tuple(inputs.names), cubic=inputs.cubic)
+        return Connection(links, tuple(inputs.names), first_cubic=inputs.first_cubic)
 
     def links_to(self, drive: Description) -> dict[str, Link]:
         return checked_links(dict(self.connect), drive, dict(self.units), self.is_drive_alone)

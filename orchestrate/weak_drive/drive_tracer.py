@@ -159,7 +159,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         super().__init__(stepper, settings.max_points)
 
     def point(self, root: continuation.Root) -> Motion:
-        return motion_at(self.shooter, root, self.stepper.root.tangent)
+        return observe_motion(self.shooter, root, self.stepper.root.tangent)
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
         return self.shooter.size + 1, [self.speeds]
@@ -216,9 +216,9 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
             segment.add_bifurcation(kind, last, 0.0)
 
 
-def motion_at(shooter: Shooter, root: continuation.Root, direction: Floats) -> Motion:
+def observe_motion(shooter: Shooter, root: continuation.Root, direction: Floats) -> Motion:
     along = root if root.tangent @ direction > 0.0 else root.reversed()
-    values = shooter.multipliers()
+    values = shooter.floquet_multipliers()
     period = shooter.observe_period(root.unknowns)
     return Motion(along, shooter.jacobian_matrix, values, period, shooter.angle, shooter.in_contact)
 
@@ -227,12 +227,12 @@ def find_motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
     shooter.compute_jacobian(guess)
     speed = continuation.unit_vector(len(guess), -1)
     root = continuation.newton_correct(shooter, guess, speed, max_iterations=ITERATIONS)
-    return motion_at(shooter, root, speed if up else -speed)
+    return observe_motion(shooter, root, speed if up else -speed)
 
 
 def find_doubled_motion(shooter: Shooter, flip: Motion) -> Motion:
     for distance in (3e-3, 1e-3, 3e-4):
-        shooter.set_start_contact(flip.in_contact)
+        shooter.define_unknowns(flip.in_contact)
         shooter.set_revolutions(flip.period.revolutions)
         shooter.angle, shooter.jacobian_matrix = flip.angle, flip.matrix
         away = np.append(shooter.flip_direction(), [0.0, 0.0])
@@ -240,7 +240,7 @@ def find_doubled_motion(shooter: Shooter, flip: Motion) -> Motion:
         shooter.set_revolutions(2 * shooter.revolutions)
         with contextlib.suppress(continuation.NoConvergenceError):
             root = continuation.newton_correct(shooter, guess, away, max_iterations=ITERATIONS)
-            return motion_at(shooter, root, away)
+            return observe_motion(shooter, root, away)
     raise continuation.NoConvergenceError("no motion of twice the period near a period doubling")
 
 

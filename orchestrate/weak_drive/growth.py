@@ -35,7 +35,7 @@ def growth_rate(run: MotorRun, voltage: float, speed: float) -> float:
     length = float(averaged.relative_amplitude(structure, drive, speed / omega)) * drive.length
     shooter = Shooter((run.oscillator, run.drive), structure, drive, 1, STEPS, length)
     shooter.angle = run.master["angle"] % TURN
-    shooter.set_start_contact(structure.bonded or run.master.motion.x_rel == 0.0)
+    shooter.define_unknowns(structure.bonded or run.master.motion.x_rel == 0.0)
     ends = [voltage / shooter.volts, speed / omega]
     unknowns = np.append(shooter.scaled_state(run.master), ends)
     try:
@@ -61,5 +61,5 @@ def largest_multiplier(shooter: Shooter, guess: Floats) -> float:
         if not np.abs(offset).max() < NEAR:
             break
         if np.abs(step).max() < CLOSE:
-            return float(abs(shooter.multipliers()[0]))
+            return float(abs(shooter.floquet_multipliers()[0]))
     raise NoConvergenceError("Newton's method went too far")

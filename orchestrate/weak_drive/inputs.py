@@ -57,7 +57,7 @@ class Inputs:
             self.controls_cubic = name in whole
             self.names += [name] * (name not in whole)
         # place of the first cubic, for the master
-        self.cubic = len(self.names) if whole else -1
+        self.first_cubic = len(self.names) if whole else -1
         for name, _ in [*self.cubics, *(one for one in controls if one[0] in whole)]:
             self.names += cubic_input_names(name)
         self.state: ControllerState = self.control.begin() if self.control else ()
@@ -82,7 +82,7 @@ class Inputs:
                     rows[:, i] += share * moments[2 - back : len(moments) - back]
         for i, (_, course) in enumerate(self.cubics):
             first, last, mean, lever = course.ends_means_and_moments(edges)
-            place = self.cubic + 4 * i
+            place = self.first_cubic + 4 * i
             cubics = matched_cubics(first, last, mean, 0.5 * mean + lever / h**2, h)
             rows[:, place : place + 4] = cubics
             ends[:, place : place + 4] = np.transpose(end_derivatives(tuple(cubics.T), h))

@@ -293,7 +293,7 @@ class Master:
         for name, links in zip(("force", "motion", "pushes"), drive.numbered_links, strict=True):
             setattr(pair, name, Links.from_numbered(links))
         names = () if self._reads_recorded_in_python else connection.recorded
-        pair.cubic, pair.recorded = connection.cubic, references(drive.instance, names)
+        pair.cubic, pair.recorded = connection.first_cubic, references(drive.instance, names)
         pair.recorded_count, pair.stride = len(names), self.input_width
         pair.scratch = (c_double * (2 * pair.drive.input_count))()
         return pair

@@ -44,7 +44,7 @@ def elastic_resonance(structure: Structure, drive: Drive) -> float:
         ends = low * (1.0 + 1e-9), high * (1.0 - 1e-9)  # not at the poles themselves
         if gap_at_impact(ends[0]) < 0.0 < gap_at_impact(ends[1]):
             root = float(brentq(gap_at_impact, *ends, xtol=1e-12))
-            if gap_stays_open(w, n, root):
+            if gap_keeps_sign(w, n, root):
                 roots.append(root)
     return min(roots, key=lambda root: abs(root - bonded), default=bonded)
 
@@ -64,7 +64,8 @@ def free_frequencies_and_gap_changes(
     return np.sqrt(np.maximum(squares, 1e-6**2)), modes[1] - modes[0]  # of a box without springs
 
 
-def gap_stays_open(w: np.ndarray, n: np.ndarray, Omega: float) -> bool:
+def gap_keeps_sign(w: np.ndarray, n: np.ndarray, Omega: float) -> bool:
+    """Return whether no impact comes between, whatever the sign of the mode."""
     angles = np.pi / Omega * np.linspace(-1.0, 1.0, 401)[1:-1]
     gaps = np.cos(np.outer(angles, w)) @ (n**2 / (w * np.sin(w * np.pi / Omega)))
     return bool((gaps > 0.0).all() or (gaps < 0.0).all())
@@ -103,5 +104,5 @@ def resolved_resonance_shift(structure: Structure, drive: Drive) -> float:
     distance = resonance_shift(structure, drive)
     folds = averaged.folds(structure, drive) if distance else []
     half = 0.5 * (folds[-1].Omega - folds[0].Omega) if folds else 0.0
-    clear = abs(distance) > max(half, averaged.resonance_half_width(structure, drive))
+    clear = abs(distance) > max(half, averaged.bonded_resonance_half_width(structure, drive))
     return distance if clear else 0.0

@@ -84,12 +84,13 @@ class Shooter:
         self.revolutions, self.period_steps, self.angle = revolutions, revolutions * steps, 0.0
         self.master: Master | None = None  # of both FMUs, from the first start on
         self.volts, self.length = drive.volts(structure), length
-        self.set_start_contact(structure.bonded)
+        self.define_unknowns(structure.bonded)
 
     def set_drive(self, drive: Drive) -> None:
         self.drive, self.parameters = drive, drive.parameters()
 
-    def set_start_contact(self, in_contact: bool) -> None:
+    def define_unknowns(self, in_contact: bool) -> None:
+        """Set whether periods begin in contact, and so the unknowns; forget the Jacobian."""
         self.in_contact = in_contact
         structure, drive, length = self.structure, self.drive, self.length
         omega = structure.omega
@@ -109,6 +110,7 @@ class Shooter:
         self._last: tuple[Floats, Floats] | None = None
 
     def set_revolutions(self, revolutions: int) -> None:
+        """Set after how many revolutions the motion repeats; forget the Jacobian."""
         self.revolutions, self.period_steps = (
             revolutions,
             self.period_steps // self.revolutions * revolutions,
@@ -165,7 +167,7 @@ class Shooter:
 
         Return the state there.
         """
-        self.set_start_contact(self.structure.bonded)
+        self.define_unknowns(self.structure.bonded)
         longest = time + (self.revolutions + 1) * TURN / speed
         own_drive = self.drive
         # a rotor that keeps its speed
@@ -187,7 +189,7 @@ class Shooter:
         finally:
             self.set_drive(own_drive)
         self.angle = master["angle"] % TURN
-        self.set_start_contact(self._is_touching(master) or self.structure.bonded)
+        self.define_unknowns(self._is_touching(master) or self.structure.bonded)
         return self.scaled_state(master)
 
     def _is_touching(self, master: Master) -> bool:
@@ -243,7 +245,7 @@ class Shooter:
         master, voltage = self.begin_period(unknowns)
         master.run(np.full(steps, voltage))
         self.angle = master["angle"] % TURN
-        self.set_start_contact(in_contact)
+        self.define_unknowns(in_contact)
         return np.append(self.scaled_state(master), unknowns[-2:])
 
     # -- the equations --
@@ -305,7 +307,8 @@ class Shooter:
                         return (4.0 * fine - coarse) / 3.0  # Richardson
         raise NoConvergenceError("a grazing is too near for a derivative")
 
-    def multipliers(self) -> np.ndarray:
+    def floquet_multipliers(self) -> np.ndarray:
+        """Return the multipliers by the present Jacobian, the largest first."""
         # without the angle's own, which is 1 for every motion
         values = np.linalg.eigvals(self.return_map_derivative())
         return np.asarray(values[np.argsort(-np.abs(values))])

@@ -36,7 +36,7 @@ def test_folds_are_extrema_of_the_voltage(changes):
     turns = np.flatnonzero(np.diff(np.sign(np.diff(eta0))))
     assert [fold.Omega for fold in found] == pytest.approx(Omega[turns + 1], abs=2e-5)
     assert [fold.eta0 for fold in found] == pytest.approx(eta0[turns + 1], abs=1e-8)
-    width = averaged.resonance_half_width(*system)
+    width = averaged.bonded_resonance_half_width(*system)
     peak = Omega[np.argmax(averaged.relative_amplitude(*system, Omega))]
     sizes = averaged.relative_amplitude(*system, np.array([peak - width, peak, peak + width]))
     assert sizes[[0, 2]].mean() == pytest.approx(sizes[1] / np.sqrt(2.0), rel=0.02)
