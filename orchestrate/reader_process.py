@@ -121,7 +121,7 @@ class ReaderProcess:
 
     def ask(self, request: dict[str, Any]) -> dict[str, Any]:
         """Return the answer to a request; an empty one where the process has ended without it."""
-        timer = threading.Timer(WAITING * request["seconds"], self.kill_late)
+        timer = threading.Timer(WAITING * request["seconds"], self.mark_late_and_kill)
         timer.start()
         answer: dict[str, Any] = {}
         try:
@@ -171,7 +171,7 @@ class ReaderProcess:
         array = np.ndarray(value["shape"], kind, self.read_exactly(size))
         return array if "array" in value else array[()]
 
-    def kill_late(self) -> None:
+    def mark_late_and_kill(self) -> None:
         self.is_late = True
         self.process.kill()
 

@@ -169,7 +169,9 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         motion = begin_far_from_impacts(self.shooter, point)
         self.stepper.root, self.stepper.jacobian = motion.root, motion.matrix
         self.shot = self.shooter.shoot(motion.root.unknowns)
-        self.half_period_change = half_period_change(self.shooter, motion.root)
+        self.state_change_over_half_period = state_change_over_half_period(
+            self.shooter, motion.root
+        )
         return motion
 
     def accepts(self, root: continuation.Root) -> bool:
@@ -193,8 +195,8 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
 
     def end_before(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
         # beyond, the same motions come again, half a period later
-        change = half_period_change(self.shooter, step.after.root)
-        return (HALVED if self.half_period_change @ change < 0.0 else ""), ()
+        change = state_change_over_half_period(self.shooter, step.after.root)
+        return (HALVED if self.state_change_over_half_period @ change < 0.0 else ""), ()
 
     def end_without_root(self, segment: BranchSegment[Motion]) -> None:
         """Set why a leg ends where Newton's method fails; thin out its points next to a grazing."""
@@ -261,7 +263,7 @@ def begin_far_from_impacts(shooter: Shooter, motion: Motion) -> Motion:
     )
 
 
-def half_period_change(shooter: Shooter, root: continuation.Root) -> Floats:
+def state_change_over_half_period(shooter: Shooter, root: continuation.Root) -> Floats:
     """Return how the state changes over half the period; 0 for an odd one."""
     if shooter.revolutions % 2:
         return np.zeros(1)
