@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Mapping
 
 from ..errors import InputError
-from .ranges import refine_to_exact_inverse
+from .ranges import invert_exactly
 
 
 def stiffness_from_frequency(f: float, mass: float) -> float:
@@ -24,16 +24,14 @@ def damping_from_ratio(ratio: float, omega: float, mass: float) -> float:
 def natural_frequency(spring: float, mass: float) -> float:
     """Return a mass's natural frequency, Hz; inverse of :func:`stiffness_from_frequency`."""
     guess = math.sqrt(spring / mass) / (2.0 * math.pi)
-    return refine_to_exact_inverse(guess, lambda f: stiffness_from_frequency(f, mass), spring)
+    return invert_exactly(guess, lambda f: stiffness_from_frequency(f, mass), spring)
 
 
 def damping_ratio(damper: float, f: float, mass: float) -> float:
     """Return the damping ratio (1: critical) from a damping constant and a frequency, Hz."""
     omega = 2.0 * math.pi * f
     ratio = damper / (2.0 * omega * mass)
-    return refine_to_exact_inverse(
-        ratio, lambda guess: damping_from_ratio(guess, omega, mass), damper
-    )
+    return invert_exactly(ratio, lambda guess: damping_from_ratio(guess, omega, mass), damper)
 
 
 def checked_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]:

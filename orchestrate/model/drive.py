@@ -10,13 +10,7 @@ from typing import TYPE_CHECKING
 from ..errors import InputError
 from .conversions import damping_from_ratio
 from .described import Described
-from .ranges import (
-    DRIVE,
-    RATIO_QUANTITIES,
-    checked_range,
-    construct_or_explain,
-    refine_to_exact_inverse,
-)
+from .ranges import DRIVE, RATIO_QUANTITIES, checked_range, construct_or_explain, invert_exactly
 from .structure import Structure
 
 if TYPE_CHECKING:
@@ -236,7 +230,7 @@ class Drive(Described):
         """Return the empty box's natural frequency over the structure's omega."""
         omega, mass = structure.omega, self.box_mass
         guess = math.sqrt(self.box_stiffness / mass) / omega
-        return refine_to_exact_inverse(
+        return invert_exactly(
             guess, lambda ratio: suspension_stiffness(ratio, omega, mass), self.box_stiffness
         )
 
@@ -244,7 +238,7 @@ class Drive(Described):
         """Return the box's damping ratio, c_b/(2 omega M_t)."""
         omega, mass = structure.omega, self.box_mass
         guess = self.box_damping / (2.0 * omega * mass)
-        return refine_to_exact_inverse(
+        return invert_exactly(
             guess, lambda ratio: damping_from_ratio(ratio, omega, mass), self.box_damping
         )
 

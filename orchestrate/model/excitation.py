@@ -15,20 +15,14 @@ from os import PathLike
 from ..errors import InputError
 from ..units import largest_static_displacement
 from .described import Described
-from .ranges import (
-    EXCITATION,
-    PUSHES,
-    RATIO_QUANTITIES,
-    construct_or_explain,
-    refine_to_exact_inverse,
-)
+from .ranges import EXCITATION, PUSHES, RATIO_QUANTITIES, construct_or_explain, invert_exactly
 from .structure import Structure
 
 
 @lru_cache(maxsize=4096)
 def frequency_ratio(frequency: float, omega: float) -> float:
     """Return frequency over omega, which times omega is the frequency again."""
-    return refine_to_exact_inverse(frequency / omega, lambda eta: eta * omega, frequency)
+    return invert_exactly(frequency / omega, lambda eta: eta * omega, frequency)
 
 
 @dataclass(frozen=True, kw_only=True)

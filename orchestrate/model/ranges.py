@@ -262,9 +262,7 @@ def construct_or_explain(
         raise InputError(f"{numbers_given}: they make {error}") from None
 
 
-def refine_to_exact_inverse(
-    guess: float, forward: Callable[[float], float], target: float
-) -> float:
+def invert_exactly(guess: float, forward: Callable[[float], float], target: float) -> float:
     """Return the float near ``guess`` that ``forward`` maps to ``target``, else ``guess``."""
     # of the few numbers that do, the one with the fewest digits: the one that somebody wrote down
     near = [guess]

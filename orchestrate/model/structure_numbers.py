@@ -15,7 +15,7 @@ from .conversions import (
     natural_frequency,
     stiffness_from_frequency,
 )
-from .ranges import OF_LENGTH, STRUCTURE, refine_to_exact_inverse
+from .ranges import OF_LENGTH, STRUCTURE, invert_exactly
 from .spelling import expected_one_of
 
 if TYPE_CHECKING:
@@ -60,20 +60,20 @@ class StructureNumbers:
     def mu(self) -> float:
         """Mass ratio m2/m1 (2)."""
         self.require_mass_2("mu")
-        return refine_to_exact_inverse(self.m2 / self.m1, lambda mu: mu * self.m1, self.m2)
+        return invert_exactly(self.m2 / self.m1, lambda mu: mu * self.m1, self.m2)
 
     @property
     def kappa(self) -> float:
         """Stiffness ratio k2/k1 (2)."""
         self.require_mass_2("kappa")
-        return refine_to_exact_inverse(self.k2 / self.k1, lambda kappa: kappa * self.k1, self.k2)
+        return invert_exactly(self.k2 / self.k1, lambda kappa: kappa * self.k1, self.k2)
 
     @property
     def D1(self) -> float:
         """Damping ratio d1/(2 omega m1) of mass 1 (8)."""
         omega, m1 = self.omega, self.m1
         ratio = self.d1 / (2.0 * omega * m1)
-        return refine_to_exact_inverse(ratio, lambda D: damping_from_ratio(D, omega, m1), self.d1)
+        return invert_exactly(ratio, lambda D: damping_from_ratio(D, omega, m1), self.d1)
 
     @property
     def D2(self) -> float:
@@ -81,9 +81,7 @@ class StructureNumbers:
         self.require_mass_2("D2")
         omega, m1, mu = self.omega, self.m1, self.mu
         ratio = self.d2 / (2.0 * omega * self.m2)
-        return refine_to_exact_inverse(
-            ratio, lambda D: damping_from_ratio(D, omega, m1) * mu, self.d2
-        )
+        return invert_exactly(ratio, lambda D: damping_from_ratio(D, omega, m1) * mu, self.d2)
 
     @property
     def f1(self) -> float:

@@ -58,7 +58,7 @@ class ChunkSchedule:
         self.guesses: dict[int, Guess] = {}
         done = set(range(len(self.chunks))) if self.is_complete else self.load_stored_chunks()
         self.left = {each.index: each for each in self.chunks if each.index not in done}
-        self._stored_items = sum(map(self.chunk_item_count, done))
+        self._stored_items = sum(map(self.item_count, done))
         self.under_way: set[int] = set()
         self._ends: dict[int, Table] = {}  # last entries of the last chunks that are certain
         self.wasted = 0  # items that were guessed in vain
@@ -72,13 +72,13 @@ class ChunkSchedule:
             if problem or ~index in valid:  # of a guess that stands already
                 self.store.drop(index, problem)
             elif index < 0:
-                start, table = self.stored_guess_start_and_table(~index)
+                start, table = self.read_guess(~index)
                 self.guesses[~index] = Guess(start, last_entries(table))
             else:
                 valid.add(index)
         return valid
 
-    def stored_guess_start_and_table(self, index: int) -> tuple[bytes, Table]:
+    def read_guess(self, index: int) -> tuple[bytes, Table]:
         table = dict(self.store.get(~index))
         return table.pop(START).tobytes(), table
 
@@ -87,15 +87,11 @@ class ChunkSchedule:
         if number >= len(self.chunks):
             return f"none of the {len(self.chunks)} of this job"
         try:
-            table = (
-                self.store.get(index)
-                if index >= 0
-                else self.stored_guess_start_and_table(number)[1]
-            )
+            table = self.store.get(index) if index >= 0 else self.read_guess(number)[1]
         except Exception:
             return "not readable"
-        fits = self.job.has_row_per_item(table, self.chunk_item_count(number))
-        return "" if fits else f"not of {self.chunk_item_count(number)} items"
+        fits = self.job.has_row_per_item(table, self.item_count(number))
+        return "" if fits else f"not of {self.item_count(number)} items"
 
     @property
     def is_complete(self) -> bool:
@@ -104,9 +100,9 @@ class ChunkSchedule:
     def items_done(self) -> int:
         """Return how far the progress bar is: items computed, those of guessed chunks included."""
         last = self.job.last_weight - 1 if self.is_complete else 0
-        return self._stored_items + sum(map(self.chunk_item_count, self.guesses)) + last
+        return self._stored_items + sum(map(self.item_count, self.guesses)) + last
 
-    def chunk_item_count(self, index: int) -> int:
+    def item_count(self, index: int) -> int:
         return self.chunks[index].stop - self.chunks[index].start
 
     def make_items_or_finish(self) -> None:
@@ -117,12 +113,9 @@ class ChunkSchedule:
     # -- what may be computed next ----------------------------------------------------------------
 
     def next_task(self, may_guess: bool = True) -> Task | None:
-        guesses = may_guess and self.wasted <= VAIN * self._stored_items
-        finders = (
-            self.tasks_with_known_start,
-            self.tasks_continuing_guesses,
-            self.tasks_in_longest_gap,
-        )[: 3 if guesses else 1]
+        finders = [self.tasks_with_known_start]
+        if may_guess and self.wasted <= VAIN * self._stored_items:
+            finders += [self.tasks_continuing_guesses, self.tasks_in_longest_gap]
         return next((task for find in finders for task in find()), None)
 
     def is_untouched(self, index: int) -> bool:
@@ -207,12 +200,12 @@ class ChunkSchedule:
 
     def add_result(self, task: Task, start: bytes, table: Table) -> None:
         index = task.chunk.index
-        assert self.job.has_row_per_item(table, self.chunk_item_count(index)), (
+        assert self.job.has_row_per_item(table, self.item_count(index)), (
             f"{self.job.name}: item_columns"
         )
         self.under_way.discard(index)
         if task.guess:
-            self.wasted += self.chunk_item_count(index) if index in self.guesses else 0
+            self.wasted += self.item_count(index) if index in self.guesses else 0
             self.guesses[index] = Guess(start, last_entries(table))
             self.store.put(~index, {**table, START: np.frombuffer(start, np.uint8)})
         else:
@@ -223,7 +216,7 @@ class ChunkSchedule:
     def store_chunk(self, index: int, table: Table) -> None:
         self.store.put(index, table)
         del self.left[index]
-        self._stored_items += self.chunk_item_count(index)
+        self._stored_items += self.item_count(index)
         if self.job.sequential:
             self._ends.pop(index - 1, None)
             self._ends[index] = last_entries(table)
@@ -233,13 +226,11 @@ class ChunkSchedule:
             after = self.chunks[index].after
             if after is None or after not in self.left:
                 guess = self.guesses.pop(index)
-                if (
-                    after is None
-                    or self.job.boundary_state(self.last_entries_of(after)) == guess.start
-                ):
-                    self.store_chunk(index, self.stored_guess_start_and_table(index)[1])
+                end = None if after is None else self.last_entries_of(after)
+                if end is None or self.job.boundary_state(end) == guess.start:
+                    self.store_chunk(index, self.read_guess(index)[1])
                 else:
-                    self.wasted += self.chunk_item_count(index)
+                    self.wasted += self.item_count(index)
                 self.store.drop(~index)
 
     def finish_if_done(self) -> None:

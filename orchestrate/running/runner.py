@@ -104,9 +104,8 @@ class Runner:
         with self.make_bar() as bar:
             if not (self.options.cluster or self.foreign):
                 with thread_workers(1) if self.in_threads else inline_workers() as workers:
-                    self.compute_while(
-                        workers, self.fmus_to_send(workers), bar, self.is_little_left
-                    )
+                    fmus = self.fmus_to_send(workers)
+                    self.compute_while(workers, fmus, bar, self.is_little_left)
             if not self.all_complete():
                 with self.choose_workers() as workers:
                     fmus = self.fmus_to_send(workers)
@@ -117,14 +116,16 @@ class Runner:
     def choose_workers(self) -> AbstractContextManager[Workers]:
         count = self.options.worker_count
         if self.options.cluster:
-            from .cluster import (
-                cluster_workers,  # brings asyncio, which worker processes do without
-            )
+            # brings asyncio, which worker processes do without
+            from .cluster import cluster_workers
 
             return cluster_workers(self.options.cluster, count)
         if self.foreign:
             return process_workers(min(count, max(1, self.count_usable_workers())), self.foreign)
         return thread_workers(count) if self.in_threads else process_workers(count)
+
+    def progress_total(self) -> int:
+        return sum(schedule.job.progress_total() for schedule in self.schedules.values())
 
     def items_done(self) -> int:
         return sum(schedule.items_done() for schedule in self.schedules.values())
@@ -132,10 +133,7 @@ class Runner:
     def is_little_left(self) -> bool:
         if self.options.worker_count == 1 or not self.computed_items:
             return True
-        left = (
-            sum(schedule.job.progress_total() for schedule in self.schedules.values())
-            - self.items_done()
-        )
+        left = self.progress_total() - self.items_done()
         seconds = (time.perf_counter() - self.start_time) / self.computed_items * left
         return seconds < MIN_PARALLEL_SECONDS or self.count_usable_workers() < 2
 
@@ -147,12 +145,10 @@ class Runner:
         )
 
     def make_bar(self) -> Any:
-        total = sum(schedule.job.progress_total() for schedule in self.schedules.values())
         unit = self.jobs[0].item if len(self.jobs) == 1 else "item"
         shown = self.options.progress
-        return progress_bar(
-            self.bar_label(), shown, total=total, initial=self.items_done(), unit=unit
-        )
+        ends = {"total": self.progress_total(), "initial": self.items_done()}
+        return progress_bar(self.bar_label(), shown, **ends, unit=unit)
 
     def bar_label(self) -> str:
         return self.jobs[0].name if len(self.jobs) == 1 else f"{len(self.jobs)} results"
