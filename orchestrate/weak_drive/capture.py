@@ -85,9 +85,7 @@ class CaptureJob(Job):
                 start = partial(self.run_from_rest, start_run, system)
                 outcomes = [start(voltage) for voltage in self.voltages]
                 rows.append(outcomes)
-                low, high = bracket_threshold_voltage(
-                    self.voltages, outcomes, start, self.tolerance
-                )
+                low, high = bracket_threshold(self.voltages, outcomes, start, self.tolerance)
                 borders.append([*low, *high])
         return {"outcomes": np.array(rows, dtype=float), "borders": np.array(borders)}
 
@@ -179,7 +177,7 @@ class BracketEnd(NamedTuple):
     speed: float = math.nan
 
 
-def bracket_threshold_voltage(
+def bracket_threshold(
     voltages: Sequence[float],
     outcomes: Sequence[CaptureOutcome],
     start: Callable[[float], CaptureOutcome],

@@ -88,9 +88,7 @@ def checked_links(
     whole = moves and (alone or "box_force" in connect)
     if not whole and (not pushes or moves or set(connect) & set(FORCE)):
         missing = "box_force" if moves else "a motion of the box"
-        likely = ", ".join(
-            f"{ours}={theirs}" for ours, theirs in propose_connections(drive).items()
-        )
+        likely = ", ".join(map("=".join, propose_connections(drive).items()))
         hint = f"; by unit and name likely: {likely}" if likely else ""
         raise InputError(f"connect: {missing} is missing; {EXPECTED}{hint}")
     links: dict[str, Link] = {}
@@ -198,11 +196,9 @@ def explain_proposal(drive: Description, ours: str, theirs: str) -> str:
     variable = drive.variable(theirs)
     if ours == theirs:
         return "has the same name"
-    unit, alike = (
-        variable.unit in drive.units,
-        name_similarity(ours.partition("_")[2], theirs) == 1.0,
-    )
-    reasons = [f"{variable.causality} in {variable.unit}"] * unit + ["a name like it"] * alike
+    alike = name_similarity(ours.partition("_")[2], theirs) == 1.0
+    unit = [f"{variable.causality} in {variable.unit}"] * (variable.unit in drive.units)
+    reasons = unit + ["a name like it"] * alike
     return " and ".join(reasons)
 
 

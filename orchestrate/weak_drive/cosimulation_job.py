@@ -94,9 +94,8 @@ class CosimulationRun(Run):
             raise
         self.require_bounded_forces(record["time"], record["box_force"])
         nodes = record["time"].copy()
-        nodes[record.ends] = self.job.communication_times(self.parts)[steps.start + 1 :][
-            : len(record.ends)
-        ]
+        times = self.job.communication_times(self.parts)[steps.start + 1 :]
+        nodes[record.ends] = times[: len(record.ends)]
         table = {"nodes": nodes[1:], "cubics": np.transpose(record.after.input_cubics())}
         table |= {"work": record.after["given"], "ended": np.array([self.master.end_reason])}
         if self.master.connection.recorded:
@@ -114,9 +113,8 @@ class CosimulationRun(Run):
             if "box_force" not in links:
                 raise FmuError(text) from None
             text += f": look at the unit of {motion} and the sign of box_force"
-            raise FmuError(
-                f"{text}, connect {format_reversed_force(links)}; or reduce the step"
-            ) from None
+            text += f", connect {format_reversed_force(links)}; or reduce the step"
+            raise FmuError(text) from None
 
     def run_steps(self, steps: range) -> Record:
         """Run both FMUs over some steps, the first one in parts where no acceleration is known."""
@@ -124,9 +122,8 @@ class CosimulationRun(Run):
         if steps.start or not divides:
             return self.inputs.run_master(self.master, steps, h, int(divides))
         parts = np.array(FIRST_STEP_PARTS) / sum(FIRST_STEP_PARTS) * h
-        rows = self.inputs.rows_over_steps(
-            np.append(0.0, np.cumsum(parts)), self.master.input_width
-        )
+        edges = np.append(0.0, np.cumsum(parts))
+        rows = self.inputs.rows_over_steps(edges, self.master.input_width)
         runs = (self.master.run(rows[i : i + 1], h) for i, h in enumerate(parts.tolist()))
         pieces = join_records([*runs])
         if self.master.end_reason:
@@ -168,11 +165,8 @@ class CosimulateJob(CoupledJob, Question):
         values |= {"parameters": dict(self.start_values)}
         values |= {name: getattr(self, name) for name in ("duration", "step", "record", "start")}
         texts = (f"{name}={value!r}" for name, value in values.items() if value)
-        structure = (
-            "None"
-            if self.is_drive_alone
-            else f"Structure{format_brief(to_json_data(self.structure))}"
-        )
+        described = format_brief(to_json_data(self.structure))
+        structure = "None" if self.is_drive_alone else f"Structure{described}"
         return f"{self.asked}({structure}, {self.drive!r}, {', '.join(texts)})"
 
     def step_count(self) -> int:
@@ -194,9 +188,7 @@ class CosimulateJob(CoupledJob, Question):
         return "run (not resumable)"
 
     def advance(self, fmus: Fmus, steps: range, previous: Table | None) -> Table:
-        response = (
-            self.measure_response_to_force() if previous is None else previous["response"][-1]
-        )
+        response = previous["response"][-1] if previous else self.measure_response_to_force()
         table: Table = {"response": response[np.newaxis]}
         warned: dict[str, None] = {}
         for parts in self.step_divisions():
@@ -231,9 +223,8 @@ class CosimulateJob(CoupledJob, Question):
             return np.array([0.0, math.nan])
         for force in (0.0, 1.0):
             with suppress(FmuError), Instance(self.drive, "drive") as drive:
-                connection = self.initialize_and_connect(
-                    drive, Inputs(self.inputs, drive.description)
-                )
+                inputs = Inputs(self.inputs, drive.description)
+                connection = self.initialize_and_connect(drive, inputs)
                 side = DriveSide(drive, replace(connection, inputs=()))  # they stay as they began
                 side.set_inputs((force, 0.0, 0.0, 0.0), ())
                 motion, about = [side.read_outputs()[:3]], drive.description

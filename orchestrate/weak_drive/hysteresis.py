@@ -169,9 +169,8 @@ class HysteresisLoop:
         for leg in record.rows_by_leg():
             first, last = record.eta0(leg[[0, -1]]).tolist()
             if self.max_hold:
-                jumps += self.find_jumps(
-                    self.hold_ramp_voltage(record.step_of_row(int(leg[0]))), last
-                )
+                start = self.hold_ramp_voltage(record.step_of_row(int(leg[0])))
+                jumps += self.find_jumps(start, last)
             else:
                 jumps.append(Jump(UNDECIDED, first, last))
         return merge_overlapping(jumps, record.voltage_direction)
@@ -229,9 +228,7 @@ class HysteresisLoop:
         expected = slopes[min(slopes)] if slopes else 1.0  # over about as long a step
         change = abs(speed_slope(low, high) - expected) * length
         return (
-            change
-            - self.settings.bend
-            - min(self.error_of_difference(low, high), self.settings.same)
+            change - self.settings.bend - min(self.difference_error(low, high), self.settings.same)
         )
 
     def insert_point_between(self, points: list[HeldPoint], i: int) -> bool:
@@ -256,10 +253,8 @@ class HysteresisLoop:
         low, high = points[i : i + 2]
         landed = self.hold_within_step(low, high.voltage, high, must_last=True)
         points[i + 1] = high = landed if math.isfinite(landed.speed) else high
-        if (
-            low.lasts < self.required_lifetime(low, high)
-            or self.excess_change(points, i, jumps) <= 0.0
-        ):
+        is_brief = low.lasts < self.required_lifetime(low, high)
+        if is_brief or self.excess_change(points, i, jumps) <= 0.0:
             return None
         outcome, change = self.outcome_of_way_back(low, high), abs(high.speed - low.speed)
         is_clear = math.copysign(change, speed_slope(low, high)) >= self.settings.clear
@@ -280,12 +275,9 @@ class HysteresisLoop:
         later = self.hold_until_lasting(back, back, self.required_lifetime(back, back))
         if self.may_be_same_motion(later, low):
             return NONE
-        lasts = self.least_speed_difference(later, back) <= self.settings.same
-        return (
-            LOST
-            if lasts and self.least_speed_difference(back, low) >= self.settings.clear
-            else UNDECIDED
-        )
+        lasts = self.speed_distance(later, back) <= self.settings.same
+        is_clear = self.speed_distance(back, low) >= self.settings.clear
+        return LOST if lasts and is_clear else UNDECIDED
 
     def lands_on_one_motion(self, low: HeldPoint, high: HeldPoint) -> bool:
         """Return whether a motion that had converged comes to one other wherever it is lost."""
@@ -304,9 +296,8 @@ class HysteresisLoop:
         # a motion of which no growth is known only with `must_last`
         point = self.hold_from(low, voltage)
         if abs(point.speed - low.speed) < abs(point.speed - high.speed):
-            return self.hold_until_lasting(
-                point, high, self.required_lifetime(point, high) if must_last else 0.0
-            )
+            lifetime = self.required_lifetime(point, high) if must_last else 0.0
+            return self.hold_until_lasting(point, high, lifetime)
         return point._replace(time=max(point.time, high.time))
 
     def required_lifetime(self, low: HeldPoint, high: HeldPoint) -> float:
@@ -328,7 +319,7 @@ class HysteresisLoop:
             return point
         later = self.move_and_hold(point.state, point.voltage, point.voltage, lifetime)
         lasted = point.lasts + later.time
-        if self.least_speed_difference(later, point) <= self.settings.same:
+        if self.speed_distance(later, point) <= self.settings.same:
             return later._replace(time=point.time, lasts=lasted)
         return later._replace(time=max(point.time + lasted, high.time))
 
@@ -361,13 +352,13 @@ class HysteresisLoop:
     def may_be_same_motion(self, point: HeldPoint, other: HeldPoint) -> bool:
         """Return whether two settled speeds may be of one motion, and are not `clear` away."""
         is_near = abs(point.speed - other.speed) < self.settings.clear
-        return is_near and self.least_speed_difference(point, other) <= self.settings.same
+        return is_near and self.speed_distance(point, other) <= self.settings.same
 
-    def least_speed_difference(self, point: HeldPoint, other: HeldPoint) -> float:
+    def speed_distance(self, point: HeldPoint, other: HeldPoint) -> float:
         """Return how far two settled speeds are apart at least, by their errors."""
-        return abs(point.speed - other.speed) - self.error_of_difference(point, other)
+        return abs(point.speed - other.speed) - self.difference_error(point, other)
 
-    def error_of_difference(self, point: HeldPoint, other: HeldPoint) -> float:
+    def difference_error(self, point: HeldPoint, other: HeldPoint) -> float:
         """Return the error of the difference between two settled speeds."""
         return math.hypot(point.error, other.error)
 

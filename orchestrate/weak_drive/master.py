@@ -194,9 +194,8 @@ class Master:
         """Begin anew at the state that both instances are in."""
         unknown = [math.nan] * len(self.connection.inputs)
         step, motion = [0.0] * (MOTION - TIME), self.oscillator.get()
-        self.drive.set_inputs(
-            (motion[FORCE_PLACE], 0.0, 0.0, 0.0), ()
-        )  # its acceleration follows it
+        # its acceleration follows the force
+        self.drive.set_inputs((motion[FORCE_PLACE], 0.0, 0.0, 0.0), ())
         then = [0.0] * (4 * len(self.connection.connected_pushes))
         self.row = [*step, *motion, *self.drive.read_outputs(), *then, *unknown]
         for name, count in MEMORY.items():
@@ -282,9 +281,8 @@ class Master:
 
     def _make_pair(self) -> Pair:
         connection, drive = self.connection, self.drive
-        pair = Pair(
-            Side.from_channel(self.oscillator, ["impact_count"]), Side.from_channel(drive.channel)
-        )
+        oscillator = Side.from_channel(self.oscillator, ["impact_count"])
+        pair = Pair(oscillator, Side.from_channel(drive.channel))
         for name in ("tolerance", "easy", "halvings"):
             setattr(pair, name, getattr(self.scheme, name))
         goes_back = drive.instance.description.has_states

@@ -5,7 +5,7 @@ import pytest
 
 from orchestrate import capture
 from orchestrate.weak_drive.averaged import bonded_dividing_speed
-from orchestrate.weak_drive.capture import bracket_threshold_voltage
+from orchestrate.weak_drive.capture import bracket_threshold
 from orchestrate.weak_drive.capture_rule import CONVERGED, UNDECIDED, CaptureOutcome
 
 from ...sparing import ordinary
@@ -71,7 +71,7 @@ def test_undecided_starts_widen_the_border(known):
             return CaptureOutcome(CONVERGED)
         return CaptureOutcome(CONVERGED, True, 1.0) if voltage > 1.47 else CaptureOutcome(UNDECIDED)
 
-    ends = bracket_threshold_voltage(known, [start(voltage) for voltage in known], start, 0.01)
+    ends = bracket_threshold(known, [start(voltage) for voltage in known], start, 0.01)
     low, high = (end.voltage for end in ends)
     assert 1.27 <= low < 1.28 and 1.47 < high <= 1.48
     assert len(asked) < 30
