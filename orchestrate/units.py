@@ -149,9 +149,8 @@ def unit_of_xi(data: xr.Dataset) -> xr.DataArray | float | None:
     stiffness = [omega**2, parameter_of(data, "k1"), parameter_of(data, "k2")]
     if any(one is None for one in (*pushes, *stiffness)) or np.any(box["level"] != 0.0):
         return None
-    return (
-        largest_static_displacement(pushes, [1.0 / one for one in stiffness]) + box["level"]
-    )  # along it too
+    softness = [1.0 / one for one in stiffness]
+    return largest_static_displacement(pushes, softness) + box["level"]  # along it too
 
 
 def largest_static_displacement(pushes: Iterable[Any], softness: Iterable[Any]) -> Any:

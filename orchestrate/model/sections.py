@@ -86,7 +86,7 @@ class Section:
     name: str
     values: dict[str, Any]
 
-    def input_error(self, key: str, text: str) -> InputError:
+    def error(self, key: str, text: str) -> InputError:
         value = f" = {self.values[key]!r}" if key in self.values else ""
         return InputError(f"{self.path}: {self.name}.{key}{value}: {text}")
 
@@ -94,9 +94,7 @@ class Section:
         """Raise ``InputError`` if the section has a key other than the known ones."""
         for key in self.values:
             if key not in known:
-                raise self.input_error(
-                    key, f"no key of [{self.name}]; {expected_one_of(key, known)}"
-                )
+                raise self.error(key, f"no key of [{self.name}]; {expected_one_of(key, known)}")
 
     def present_keys(self, keys: Collection[str]) -> list[str]:
         return [key for key in keys if key in self.values]
@@ -106,7 +104,7 @@ class Section:
         first_keys, second_keys = self.present_keys(first), self.present_keys(second)
         if first_keys and second_keys:
             kinds = f"{', '.join(first)}, or {', '.join(second)}"
-            raise self.input_error(
+            raise self.error(
                 second_keys[0], f"given with {first_keys[0]}; expected keys of one kind: {kinds}"
             )
         return bool(second_keys)
@@ -115,7 +113,7 @@ class Section:
         present = self.present_keys(keys)
         if len(present) > 1:
             expected = f"expected one of {', '.join(keys)}"
-            raise self.input_error(present[1], f"conflicts with {present[0]}; {expected}")
+            raise self.error(present[1], f"conflicts with {present[0]}; {expected}")
         return present[0] if present else None
 
     def exactly_one(self, keys: Collection[str]) -> str:
@@ -127,7 +125,7 @@ class Section:
     def require_all(self, keys: Collection[str]) -> None:
         for key in keys:
             if key not in self.values:
-                raise self.input_error(key, f"missing; expected all of {', '.join(keys)}")
+                raise self.error(key, f"missing; expected all of {', '.join(keys)}")
 
     def number(self, key: str) -> float:
         """Return a key's value as a float; raise ``InputError`` if it is out of its range."""
@@ -171,7 +169,7 @@ def read_structure(section: Section) -> Structure:
         section.uses_second_form(MODAL_KEYS, (*MECHANICS[2:], *RATIO_KEYS))
         if wall := values.get("wall", False):
             for key in section.present_keys(("m2", "f2_hz", "zeta2")):
-                raise section.input_error(key, "mass 2 is a wall; expected it left out")
+                raise section.error(key, "mass 2 is a wall; expected it left out")
         section.require_all(("f1_hz", "zeta1") if wall else ("m1", "m2", *MODAL_KEYS))
         values |= section.present_numbers(("m1", "m2", *MODAL_KEYS))
         values = {key.removesuffix("_hz"): value for key, value in values.items()}
@@ -197,9 +195,7 @@ def read_excitation(section: Section, structure: Structure | None) -> Excitation
     if key == "eta":
         eta = section.number("eta")
         if structure is None:
-            raise section.input_error(
-                "eta", "it refers to a structure; expected a section [structure]"
-            )
+            raise section.error("eta", "it refers to a structure; expected a section [structure]")
         if amplitude_key is None:
             return section.construct(lambda: Excitation.nondimensional(eta, structure, **more))
         frequency = eta * structure.omega
@@ -225,7 +221,7 @@ def read_drive(motor: Section, box: Section, structure: Structure | None) -> Dri
     motor.require_all(MOTOR_NUMBERS)
     box.require_all(BOX_NUMBERS)
     if structure is None:
-        raise motor.input_error("beta", "it refers to a structure; expected a section [structure]")
+        raise motor.error("beta", "it refers to a structure; expected a section [structure]")
     numbers = {**motor.present_numbers(MOTOR_NUMBERS), **box.present_numbers(BOX_NUMBERS)}
     return motor.construct(lambda: Drive.nondimensional(**numbers, structure=structure))
 
@@ -253,7 +249,7 @@ def check_m1_given(structure: Section, motor: Section) -> None:
         and not motor.present_keys(("beta",))
     ):
         key = structure.present_keys(OMEGAS)[0]
-        raise structure.input_error(
+        raise structure.error(
             "m1", f"missing with {key}; expected it, as the motor feels the masses"
         )
 

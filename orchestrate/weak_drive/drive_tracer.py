@@ -52,9 +52,8 @@ def measure_grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) ->
         if master.motion.impact_time != before.impact_time:
             closing.append(float(shooter.fmus[0].get("impact_velocity")[0]))
         elif before.v2 < before.v1 and master.motion.v2 >= master.motion.v1:
-            gaps.append(
-                smallest_gap_in_step(shooter.structure, before, master.motion, master.scheme.h)
-            )
+            ends = before, master.motion
+            gaps.append(smallest_gap_in_step(shooter.structure, *ends, master.scheme.h))
     length = float(shooter.units[0])
     return GrazingMargins(min(gaps) / length, min(closing) / length / shooter.structure.omega)
 
@@ -169,9 +168,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         motion = begin_far_from_impacts(self.shooter, point)
         self.stepper.root, self.stepper.jacobian = motion.root, motion.matrix
         self.shot = self.shooter.shoot(motion.root.unknowns)
-        self.state_change_over_half_period = state_change_over_half_period(
-            self.shooter, motion.root
-        )
+        self.half_change = state_change_over_half_period(self.shooter, motion.root)
         return motion
 
     def accepts(self, root: continuation.Root) -> bool:
@@ -196,7 +193,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
     def end_before(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
         # beyond, the same motions come again, half a period later
         change = state_change_over_half_period(self.shooter, step.after.root)
-        return (HALVED if self.state_change_over_half_period @ change < 0.0 else ""), ()
+        return (HALVED if self.half_change @ change < 0.0 else ""), ()
 
     def end_without_root(self, segment: BranchSegment[Motion]) -> None:
         """Set why a leg ends where Newton's method fails; thin out its points next to a grazing."""
@@ -204,14 +201,12 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         if any(motion.period.sticks for motion in segment.points[-12:]):
             segment.end = UNFINISHED
             return
-        motions = [
-            each for each in segment.points if each.in_contact == segment.points[-1].in_contact
-        ]
+        last = segment.points[-1]
+        motions = [each for each in segment.points if each.in_contact == last.in_contact]
         kind, distance = extrapolate_next_grazing(
             self.shooter, [(motion.root.unknowns, motion.angle) for motion in motions]
         )
         segment.end = NO_CONVERGENCE if kind is None else KINDS[kind]
-        last = motions[-1]
         kept = [each for each in segment.points[:-1] if distance_between(each, last) > AT_GRAZING]
         segment.points = [*kept, last]
         if kind is not None and distance < AT_GRAZING:

@@ -32,7 +32,7 @@ def elastic_resonance(structure: Structure, drive: Drive) -> float:
     """Compute the undamped resonance speed with one elastic impact a revolution."""
     from scipy.optimize import brentq
 
-    w, n = free_frequencies_and_gap_changes(structure, drive)
+    w, n = free_modes_of_gap(structure, drive)
 
     def gap_at_impact(Omega: float) -> float:
         return float((n**2 / (w * np.tan(w * np.pi / Omega))).sum())
@@ -49,9 +49,7 @@ def elastic_resonance(structure: Structure, drive: Drive) -> float:
     return min(roots, key=lambda root: abs(root - bonded), default=bonded)
 
 
-def free_frequencies_and_gap_changes(
-    structure: Structure, drive: Drive
-) -> tuple[np.ndarray, np.ndarray]:
+def free_modes_of_gap(structure: Structure, drive: Drive) -> tuple[np.ndarray, np.ndarray]:
     """Compute the natural frequencies without contact, and each mode's change of gap."""
     from scipy.linalg import eigh
 
@@ -87,9 +85,8 @@ def lower_and_higher_resonance(structure: Structure, drive: Drive) -> tuple[floa
 
 def dividing_speed(structure: Structure, drive: Drive) -> float:
     """Return the speed over omega that divides motions below and beyond resonance."""
-    return averaged.bonded_dividing_speed(structure, drive) + resolved_resonance_shift(
-        structure, drive
-    )
+    shift = resolved_resonance_shift(structure, drive)
+    return averaged.bonded_dividing_speed(structure, drive) + shift
 
 
 def resonance_shift(structure: Structure, drive: Drive) -> float:

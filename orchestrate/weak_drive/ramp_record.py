@@ -57,16 +57,12 @@ class RampRecord:
 
     def eta0(self, rows: Any) -> Any:
         """Return the voltage over K omega at the ends of revolutions."""
-        return (
-            self.rotation_sense
-            * self.table["voltage"][rows]
-            / self.job.drive.volts(self.job.structure)
-        )
+        volts = self.job.drive.volts(self.job.structure)
+        return self.rotation_sense * self.table["voltage"][rows] / volts
 
     def step_of_row(self, row: int) -> int:
-        return min(
-            math.ceil(self.table["time"][row] / self.job.scheme.h), self.job.step_count() - 1
-        )
+        step = math.ceil(self.table["time"][row] / self.job.scheme.h)
+        return min(step, self.job.step_count() - 1)
 
     def rows_of_jump(self, low: float, high: float, before: float, after: float) -> list[float]:
         """Return the rows at which a jump begins, is half done and ends; NaN where it does not."""

@@ -111,10 +111,8 @@ class Shooter:
 
     def set_revolutions(self, revolutions: int) -> None:
         """Set after how many revolutions the motion repeats; forget the Jacobian."""
-        self.revolutions, self.period_steps = (
-            revolutions,
-            self.period_steps // self.revolutions * revolutions,
-        )
+        self.period_steps = self.period_steps // self.revolutions * revolutions
+        self.revolutions = revolutions
         self.jacobian_matrix, self._last = np.empty((0, 0)), None
 
     def state_change_after(self, unknowns: Floats, revolutions: int) -> Floats:

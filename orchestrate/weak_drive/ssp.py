@@ -93,7 +93,7 @@ def parameter_file_path(component: str) -> str:
     return f"resources/{component}.ssv"
 
 
-def add_units_element(root: ET.Element, components: Components) -> None:
+def add_units(root: ET.Element, components: Components) -> None:
     parent = add_element(root, "ssd:Units")
     each = [(c, c.unit(p)) for c in components.values() for p in (*c.inputs, *c.outputs)]
     used = {unit: one.fmu.units[unit] for one, unit in each if unit}
@@ -104,7 +104,7 @@ def add_units_element(root: ET.Element, components: Components) -> None:
         add_element(add_element(parent, "ssc:Unit", name=name), "ssc:BaseUnit", **powers)
 
 
-def add_component_element(elements: ET.Element, name: str, one: Component, version: str) -> None:
+def add_component(elements: ET.Element, name: str, one: Component, version: str) -> None:
     file = {"type": "application/x-fmu-sharedlibrary", "source": f"resources/{one.path.name}"}
     component = add_element(elements, "ssd:Component", name=name, **file)
     connectors = add_element(component, "ssd:Connectors")
@@ -131,9 +131,7 @@ def add_master_annotation(system: ET.Element, step: float) -> None:
     add_element(information, "oms:FixedStepMaster", **master)
 
 
-def add_connection_element(
-    connections: ET.Element, ours: str, link: Link, from_oscillator: bool
-) -> None:
+def add_connection(connections: ET.Element, ours: str, link: Link, from_oscillator: bool) -> None:
     """Add a connection from the oscillator, or to it."""
     ends = [("oscillator", ours), ("shaker", link.theirs)]
     (start, output), (end, taken) = ends if from_oscillator else reversed(ends)
@@ -156,12 +154,12 @@ def system_description_xml(
     system = add_element(root, "ssd:System", name="WeakDrive", description=description)
     elements = add_element(system, "ssd:Elements")
     for name, one in components.items():
-        add_component_element(elements, name, one, version)
+        add_component(elements, name, one, version)
     connections = add_element(system, "ssd:Connections")
     for ours, link in links.items():
-        add_connection_element(connections, ours, link, ours in OSCILLATES)
+        add_connection(connections, ours, link, ours in OSCILLATES)
     add_master_annotation(system, step)
-    add_units_element(root, components)
+    add_units(root, components)
     add_element(root, "ssd:DefaultExperiment", startTime="0.0", stopTime=repr(stop_time))
     return xml_bytes(root)
 
