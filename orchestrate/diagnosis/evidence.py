@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..constants import TURN
 from ..errors import InputError
 from ..laboratory.analysis.channels import Channels
-from ..laboratory.analysis.order_tracking import decimated, integrated
+from ..laboratory.analysis.order_tracking import decimate, integrate_in_time
 from ..laboratory.pieces import Floats, Pieces
 from ..laboratory.sampled import Sampled
 from ..laboratory.sensors import PARTICIPATION
@@ -88,7 +88,7 @@ class Evidence:
     ) -> Evidence:
         """Build the evidence from a whole record's orders: cut and decimate it where possible."""
         channels, highest = cut_to_resonance(orders)
-        thin = decimated(channels, highest, kept)
+        thin = decimate(channels, highest, kept)
         if thin is not orders.channels:
             orders = channel_orders(thin)
         rate = orders.channels.sample_rate
@@ -132,7 +132,7 @@ class Evidence:
         """Cubics of the sign of the measured velocity, relative to the base and smooth at zero."""
         channels = self.orders.channels
         moved = (channels.values[self.orders.rows] - channels.box).mean(axis=0)
-        speed = integrated(moved, self.rate, 0.5 * TURN * self.resonance)
+        speed = integrate_in_time(moved, self.rate, 0.5 * TURN * self.resonance)
         slow = self.settings.slow * TURN * self.resonance * self.displacement
         sign = speed / np.hypot(speed, slow)
         return Sampled(acceleration=tuple(sign), sample_rate=self.rate).pieces().derivatives

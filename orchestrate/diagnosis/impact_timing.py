@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ..constants import TURN
 from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.linear_prediction import prediction_error
-from ..laboratory.analysis.order_tracking import EDGE, NYQUIST, integrated, measured_phase
+from ..laboratory.analysis.order_tracking import EDGE, NYQUIST, integrate_in_time, phase_of_box
 from ..laboratory.pieces import Floats
 
 ORDERS = np.arange(1, 13)  # of what a window is projected on
@@ -226,12 +226,12 @@ def timed_windows(
     channels: Channels, rows: Sequence[int], settings: TimingSettings
 ) -> Iterator[tuple[complex, ...]]:
     """Yield the quantities of each window, in the order in which :func:`strikes_at` reads them."""
-    phase = np.maximum.accumulate(measured_phase(channels))
+    phase = np.maximum.accumulate(phase_of_box(channels))
     marks = np.arange(phase[0] / TURN + EDGE, phase[-1] / TURN - EDGE, settings.periods)
     edges = np.searchsorted(phase, TURN * marks)
     moved = channels.values[rows[0]] - channels.box
     turns = settings.periods * TURN * channels.sample_rate / np.diff(edges).max(initial=1)
-    stroke = integrated(moved, channels.sample_rate, 0.5 * turns, 2)
+    stroke = integrate_in_time(moved, channels.sample_rate, 0.5 * turns, 2)
     for begin, end in zip(edges[:-1], edges[1:], strict=True):
         samples = (end - begin) / settings.periods  # of a period
         order = max(4, round(settings.memory * samples))

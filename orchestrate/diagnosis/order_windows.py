@@ -20,9 +20,9 @@ from ..laboratory.analysis.order_tracking import (
     EDGE,
     NYQUIST,
     Window,
-    measured_phase,
-    median_sweep_rate,
-    window,
+    make_window,
+    median_absolute_sweep_rate,
+    phase_of_box,
 )
 from ..laboratory.pieces import Floats
 from ..laboratory.record import FORCES, channel_label
@@ -236,7 +236,7 @@ def moving_average(values: Floats, width: int = 5) -> Floats:
 @lru_cache(maxsize=4)  # of a record, decimated for the evidence and for a coarse search
 def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
     """Find the windows in which the base moves as a sine, and all channels' amplitudes in them."""
-    phase = measured_phase(channels)
+    phase = phase_of_box(channels)
     every = overlapping_windows(channels, phase)
     high = NYQUIST * channels.sample_rate / OFF_ORDERS[0]  # above, no floor is resolved
     usable = [w for w in every if w.frequency * channels.duration > 1.0 and w.frequency < high]
@@ -263,7 +263,7 @@ def overlapping_windows(channels: Channels, phase: Floats) -> list[Window]:
     """Divide a record into overlapping windows, each with its smoothed phase."""
     turns = (phase[-1] - phase[0]) / TURN
     usual = turns / channels.duration
-    glide = MAX_GLIDE * usual / max(median_sweep_rate(phase, channels), 1e-12)
+    glide = MAX_GLIDE * usual / max(median_absolute_sweep_rate(phase, channels), 1e-12)
     shortest = min(max(SHORTEST_WINDOW, glide), LONGEST_WINDOW)
     begin, end = np.searchsorted(phase, [phase[0] + EDGE * TURN, phase[-1] - EDGE * TURN])
     found, now = [], int(begin)
@@ -272,7 +272,7 @@ def overlapping_windows(channels: Channels, phase: Floats) -> list[Window]:
         last = max(periods, now + round(shortest * channels.sample_rate))
         if last > end:
             break
-        found.append(window(channels, phase, slice(now, last), smooth=True))
+        found.append(make_window(channels, phase, slice(now, last), smooth=True))
         now += max(1, round((1.0 - OVERLAP) * (last - now)))
     return found
 

@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike
 from ..constants import GRAVITY
 from ..errors import InputError
 from ..fmu import finder
-from ..laboratory.analysis.channels import BOX, Channels, attributes
+from ..laboratory.analysis.channels import BOX, Channels, analysis_attributes
 from ..laboratory.pieces import Floats
-from ..laboratory.sensors import CHANNELS, Sensor, measure, sensor_by_channel
+from ..laboratory.sensors import CHANNELS, Sensor, measure, sensors_by_channel
 from ..laboratory.shake import shake
 from ..laboratory.swept_sine import SweptSine
 from ..lazy import Unpack, xr
@@ -210,7 +210,7 @@ class PlanJob(Job):
         felt, gap = readings(self, structure, at, tuple(fmus.items()))
         times = level / at
         rows = {
-            name: own.digitised(times * felt[name].values, list(CHANNELS).index(name))
+            name: own.add_noise_and_digitize(times * felt[name].values, list(CHANNELS).index(name))
             for name, own in self.sensors
         }
         peak = max(float(np.abs(row).max()) for name, row in rows.items() if name != BOX)
@@ -264,7 +264,7 @@ class PlanJob(Job):
                 "counts": yes_or_no((), counts, "whether both recommended levels decide"),
             },
             {"level": variable("level", levels, "m/s2", "peak acceleration of the box")},
-            attributes("plan_test", "Plan of a test", self.structure.label()),
+            analysis_attributes("plan_test", "Plan of a test", self.structure.label()),
         )
 
 
@@ -328,7 +328,7 @@ def checked_sensors(
     sensor: Sensor | dict[str, Sensor], last: float
 ) -> tuple[tuple[str, Sensor], ...]:
     """Return sensors with a noise, one of the box too, as fast as the rule needs to ``last`` Hz."""
-    sensors = sensor_by_channel(sensor)
+    sensors = sensors_by_channel(sensor)
     responses = {name: one for name, one in sensors.items() if name != BOX}
     if not responses:
         raise InputError("sensor: only on the box; expected one on acceleration1 or acceleration2")

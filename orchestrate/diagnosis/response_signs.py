@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..laboratory.analysis.channels import BOX, Channels, averaging
+from ..laboratory.analysis.channels import BOX, Channels, divide_into_segments
 from ..laboratory.analysis.frf import EXCITED
-from ..laboratory.analysis.order_tracking import Window, fit_windows
+from ..laboratory.analysis.order_tracking import Window, fit_orders_in_windows
 from ..laboratory.pieces import Floats
 
 OFF_ORDERS = (2.37, 3.37)  # where no motion with a period has a line: what is there is noise
@@ -72,7 +72,7 @@ def is_swept(channels: Channels, periods: float) -> bool:
     """Return whether the box moves as a sine whose orders can be tracked."""
     box = Channels(channels.time, channels.sample_rate, (BOX,), channels.box[None], channels.title)
     try:
-        fit_windows(box, (1.0,), None, periods, OVERLAP)
+        fit_orders_in_windows(box, (1.0,), None, periods, OVERLAP)
     except InputError:
         return False
     return True
@@ -83,7 +83,7 @@ def is_swept(channels: Channels, periods: float) -> bool:
 
 def signs_of_orders(channels: Channels, periods: float) -> ResponseSigns:
     """Compute the orders over the first one, and the response of order 1, of a swept sine."""
-    windows, amplitudes, _ = fit_windows(channels, ORDERS, None, periods, OVERLAP)
+    windows, amplitudes, _ = fit_orders_in_windows(channels, ORDERS, None, periods, OVERLAP)
     box, rows = amplitudes[0], amplitudes[1:]
     frequency = np.array([window.frequency for window in windows])
     power = {order: np.abs(rows[:, ORDERS.index(order)]) ** 2 for order in ORDERS}
@@ -173,7 +173,7 @@ def spectra(channels: Channels) -> tuple[Floats, Floats, Floats, Floats]:
     """Return frequencies, power densities of box and rows, and their cross densities (Welch)."""
     from scipy.signal import csd, welch
 
-    options = averaging(channels, None, "hann", OVERLAP, fewest=2).options
+    options = divide_into_segments(channels, None, "hann", OVERLAP, fewest=2).scipy_options
     rows = channels.values[1:]
     frequency, box = welch(channels.box, channels.sample_rate, **options)
     own = welch(rows, channels.sample_rate, **options)[1]
@@ -188,7 +188,7 @@ def excited_lines(frequency: Floats, box: Floats) -> NDArray[np.bool_]:
 def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
     """Return the mean of 1 less the coherence over the excited lines, and that of noise."""
     try:
-        segments = averaging(channels, None, "hann", OVERLAP, fewest=2)
+        segments = divide_into_segments(channels, None, "hann", OVERLAP, fewest=2)
     except InputError:
         unknown = np.full(len(noise), np.nan)
         return unknown, unknown
@@ -198,7 +198,7 @@ def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
         power = rows[:, excited]
         coherence = np.abs(cross[:, excited]) ** 2 / (box[excited] * power)
         share = 2.0 * noise[:, None] ** 2 / channels.sample_rate / power
-        floor = np.minimum(share, 1.0).mean(axis=-1) + 1.0 / segments.independent
+        floor = np.minimum(share, 1.0).mean(axis=-1) + 1.0 / segments.independent_count
     return 1.0 - coherence.mean(axis=-1), np.minimum(floor, 1.0)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..fmu import OSCILLATOR, Player
 from ..laboratory.analysis.channels import Channels
-from ..laboratory.analysis.order_tracking import decimated, highest_frequency
+from ..laboratory.analysis.order_tracking import bound_on_sweep_frequency, decimate
 from ..laboratory.pieces import Floats
 from ..model import Structure
 from ..running.job import Job, Table
@@ -80,7 +80,9 @@ def cached_channels(data: RecordData) -> Channels:
 def cached_orders(data: RecordData) -> RecordOrders:
     """Return the orders of the whole record, thinned to what they need, once per process."""
     channels = cached_channels(data)
-    return channel_orders(decimated(channels, highest_frequency(channels), SAMPLES_PER_PERIOD))
+    return channel_orders(
+        decimate(channels, bound_on_sweep_frequency(channels), SAMPLES_PER_PERIOD)
+    )
 
 
 @lru_cache(maxsize=2)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from ..laboratory.analysis.channels import BOX, Channels, attributes
+from ..laboratory.analysis.channels import BOX, Channels, analysis_attributes
 from ..laboratory.pieces import Floats
 from ..laboratory.record import FORCES
 from ..lazy import xr
@@ -253,7 +253,7 @@ def signs_dataset(
             "channel": ("channel", np.array(names), {"long_name": "channel of the record"}),
             **{n: ("sign", np.array(columns[n]), {"long_name": text}) for n, _, text in texts},
         },
-        attributes("signs", "Signs", title, factor=factor, **described),
+        analysis_attributes("signs", "Signs", title, factor=factor, **described),
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..constants import TURN
 from ..laboratory.analysis.channels import BOX, Channels
-from ..laboratory.analysis.shock_spectrum import ramp_invariant
+from ..laboratory.analysis.shock_spectrum import ramp_invariant_filter
 from ..laboratory.pieces import Floats
 from ..model import Structure
 
@@ -75,7 +75,7 @@ class SoundStructure:
         """Compute the absolute acceleration under the box, or the force, of a record, m/s2."""
         from scipy.signal import lfilter
 
-        filters = ramp_invariant(self.f, self.zeta, channels.sample_rate)
+        filters = ramp_invariant_filter(self.f, self.zeta, channels.sample_rate)
         moved = np.asarray(lfilter(*filters, channels.box))
         return np.outer(self.gains, moved - channels.box) if self.gains else moved
 

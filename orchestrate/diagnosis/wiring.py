@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..constants import GRAVITY, TURN
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels
-from ..laboratory.analysis.order_tracking import measured_phase
+from ..laboratory.analysis.order_tracking import phase_of_box
 from ..laboratory.pieces import Floats
 from ..laboratory.record import SHORT_NAMES
 from ..laboratory.record_checks import PLATEAU, clipped_share
@@ -267,7 +267,7 @@ def lost_sample_notes(orders: RecordOrders, settings: WiringSettings) -> Iterato
     hertz = np.fft.rfftfreq(len(channels.time), 1.0 / channels.sample_rate)
     spectrum[hertz > settings.band * windows.frequency.max()] = 0.0  # noise makes the phase slip
     box = np.fft.irfft(spectrum, len(channels.time))
-    phase = measured_phase(Channels(channels.time, channels.sample_rate, (BOX,), box[None], ""))
+    phase = phase_of_box(Channels(channels.time, channels.sample_rate, (BOX,), box[None], ""))
     jump = np.abs(fftconvolve(phase, kernel, "same"))
     inside = np.zeros(len(phase), bool)
     for part in windows.parts:

@@ -26,8 +26,8 @@ NEAR = 1.0
 
 
 @dataclass(frozen=True)
-class Cells:
-    """Hold a signal as polynomials, one per cell of time; cells follow each other without gaps."""
+class PolynomialSignal:
+    """Hold a signal as polynomials, one per cell of time; cells adjoin each other."""
 
     # s
     starts: Floats
@@ -44,8 +44,8 @@ class AnalogFilter:
     residues: Complexes
 
     @classmethod
-    def from_zpk(cls, zeros: Complexes, poles: Complexes) -> AnalogFilter:
-        """Make a filter from its zeros and poles, rad/s; its gain at frequency 0 is 1."""
+    def from_zeros_and_poles(cls, zeros: Complexes, poles: Complexes) -> AnalogFilter:
+        """Make the filter of gain 1 at frequency 0 from its zeros and poles, rad/s."""
         gain = np.prod(-poles) / np.prod(-zeros)
         upper = poles[poles.imag > -1e-9 * np.abs(poles)]
         residues = []
@@ -62,48 +62,49 @@ class AnalogFilter:
         response: Complexes = 0.5 * (there + mirrored).sum(axis=-1)
         return response
 
-    def respond(
-        self, cells: Cells, impulse_times: Floats, impulses: Floats, times: Floats
+    def compute_output(
+        self, signal: PolynomialSignal, impulse_times: Floats, impulses: Floats, times: Floats
     ) -> Floats:
-        """Compute the output at equally spaced times, from rest at the first."""
+        """Compute the output at equally spaced times, from rest at the first time."""
         from scipy.signal import lfilter
 
-        inside = (impulse_times >= times[0]) & (impulse_times <= times[-1])
-        hits, strengths = impulse_times[inside], impulses[inside]
-        hit_steps = step_indices(hits, times)
-        gains = self._gains(cells, times)
+        is_inside = (impulse_times >= times[0]) & (impulse_times <= times[-1])
+        hit_times, strengths = impulse_times[is_inside], impulses[is_inside]
+        hit_steps = step_indices(hit_times, times)
+        gains = self._state_increments(signal, times)
         output = np.zeros(len(times))
         for pole, residue, gain in zip(self.poles, self.residues, gains, strict=True):
-            felt = strengths * np.exp(pole * (times[hit_steps + 1] - hits))
+            felt = strengths * np.exp(pole * (times[hit_steps + 1] - hit_times))
             gain += sum_by_step(hit_steps, felt, len(gain))
             decay = np.exp(pole * (times[-1] - times[0]) / (len(times) - 1))
             output[1:] += (residue * lfilter([1.0], [1.0, -decay], gain)).real
         return output
 
-    def _gains(self, cells: Cells, times: Floats) -> Complexes:
-        """Compute what the cells add to each pole's state over each step, at the step's end."""
-        found = np.zeros((len(self.poles), len(times) - 1), dtype=complex)
-        for part in blocks(len(cells.starts)):
-            starts, ends = cells.starts[part], cells.ends[part]
+    def _state_increments(self, signal: PolynomialSignal, times: Floats) -> Complexes:
+        """Compute what the signal adds to each pole's state over each step, at the step's end."""
+        increments = np.zeros((len(self.poles), len(times) - 1), dtype=complex)
+        for part in block_slices(len(signal.starts)):
+            starts, ends = signal.starts[part], signal.ends[part]
             steps = step_indices(ends, times)
-            lengths, left = ends - starts, times[steps + 1] - ends
-            count = cells.derivatives.shape[1]
-            moments = cells.derivatives[part] * lengths[:, None] ** np.arange(1, count + 1)
-            few, which = distinct_lengths(lengths, (times[-1] - times[0]) / (len(times) - 1))
-            for row, pole in zip(found, self.poles, strict=True):
-                weights = phi_functions(pole * few, count)[:, which]
-                gained = np.einsum("nk,kn->n", moments, weights) * np.exp(pole * left)
+            lengths, remaining = ends - starts, times[steps + 1] - ends
+            count = signal.derivatives.shape[1]
+            moments = signal.derivatives[part] * lengths[:, None] ** np.arange(1, count + 1)
+            step = (times[-1] - times[0]) / (len(times) - 1)
+            distinct, which = distinct_lengths_and_indices(lengths, step)
+            for row, pole in zip(increments, self.poles, strict=True):
+                weights = phi_functions(pole * distinct, count)[:, which]
+                gained = np.einsum("nk,kn->n", moments, weights) * np.exp(pole * remaining)
                 row[steps[0] : steps[-1] + 1] += sum_by_step(steps - steps[0], gained)
-        return found
+        return increments
 
 
-def blocks(count: int) -> Iterator[slice]:
+def block_slices(count: int) -> Iterator[slice]:
     """Yield slices that divide an array of ``count`` elements into blocks."""
     for begin in range(0, count, BLOCK):
         yield slice(begin, min(begin + BLOCK, count))
 
 
-def distinct_lengths(lengths: Floats, step: float) -> tuple[Floats, NDArray[np.int_]]:
+def distinct_lengths_and_indices(lengths: Floats, step: float) -> tuple[Floats, NDArray[np.int_]]:
     """Return the distinct lengths (equal to 1e-12 of a step), and each one's index among them."""
     whole, which = np.unique(np.round(lengths / (1e-12 * step)), return_inverse=True)
     return whole * (1e-12 * step), which
@@ -111,57 +112,59 @@ def distinct_lengths(lengths: Floats, step: float) -> tuple[Floats, NDArray[np.i
 
 def step_indices(moments: Floats, times: Floats) -> NDArray[np.int_]:
     """Return for each moment the index of the step of ``times`` that contains it, ends included."""
-    found: NDArray[np.int_] = np.searchsorted(times, moments, side="left") - 1
-    return np.clip(found, 0, len(times) - 2)
+    indices: NDArray[np.int_] = np.searchsorted(times, moments, side="left") - 1
+    return np.clip(indices, 0, len(times) - 2)
 
 
 def sum_by_step(steps: NDArray[np.int_], values: Complexes, count: int = 0) -> Complexes:
     """Sum complex values by the index of their step; return ``count`` sums or more."""
     real = np.bincount(steps, values.real, count)
-    found: Complexes = real + 1j * np.bincount(steps, values.imag, count)
-    return found
+    sums: Complexes = real + 1j * np.bincount(steps, values.imag, count)
+    return sums
 
 
 def phi_functions(z: Complexes, count: int) -> Complexes:
     """Compute ``phi_k(z)``, the integral of ``exp(z (1 - u)) u^(k-1)/(k-1)!`` over u in [0, 1]."""
-    found = np.empty((count, len(z)), dtype=complex)
+    phi = np.empty((count, len(z)), dtype=complex)
     size = np.abs(z)
     far = size > FAR
-    found[:, far] = recurrence_up(z[far], count)
+    phi[:, far] = phi_by_upward_recurrence(z[far], count)
     for low, high in ((-1.0, NEAR), (NEAR, FAR)):
         part = (size > low) & (size <= high)
         if part.any():
-            found[:, part] = recurrence_down(z[part], count, high)
-    return found
+            phi[:, part] = phi_by_downward_recurrence(z[part], count, high)
+    return phi
 
 
-def recurrence_up(z: Complexes, count: int) -> Complexes:
+def phi_by_upward_recurrence(z: Complexes, count: int) -> Complexes:
     """Compute ``phi_k(z)`` from ``phi_(k-1)``: for large z, where nothing cancels."""
-    found = np.empty((count, len(z)), dtype=complex)
+    phi = np.empty((count, len(z)), dtype=complex)
     last = np.exp(z)
     for k in range(1, count + 1):
-        last = found[k - 1] = (last - 1.0 / math.factorial(k - 1)) / z
-    return found
+        last = phi[k - 1] = (last - 1.0 / math.factorial(k - 1)) / z
+    return phi
 
 
-def recurrence_down(z: Complexes, count: int, largest: float) -> Complexes:
+def phi_by_downward_recurrence(z: Complexes, count: int, max_size: float) -> Complexes:
     """Compute ``phi_k(z)`` from ``phi_(k+1)``, the last one by its Taylor series: for small z."""
-    top = max(count, math.ceil(largest))
+    top = max(count, math.ceil(max_size))
     terms = [1.0 / math.factorial(top)]
-    while terms[-1] * largest ** (len(terms) - 1) > 1e-18 * terms[0]:
+    while terms[-1] * max_size ** (len(terms) - 1) > 1e-18 * terms[0]:
         terms.append(terms[-1] / (top + len(terms)))
     last = np.full(len(z), terms[-1], dtype=complex)
     for term in terms[-2::-1]:
         last = last * z + term
-    found = np.empty((count, len(z)), dtype=complex)
+    phi = np.empty((count, len(z)), dtype=complex)
     for k in range(top, 0, -1):
         if k <= count:
-            found[k - 1] = last
+            phi[k - 1] = last
         last = last * z + 1.0 / math.factorial(k - 1)
-    return found
+    return phi
 
 
-def low_pass(kind: str, order: int, bandwidth: float) -> tuple[Complexes, Complexes]:
+def low_pass_zeros_and_poles(
+    kind: str, order: int, bandwidth: float
+) -> tuple[Complexes, Complexes]:
     """Return zeros and poles of a low-pass filter that is 3 dB down at ``bandwidth``, Hz."""
     from scipy.signal import bessel, butter
 
@@ -173,7 +176,7 @@ def low_pass(kind: str, order: int, bandwidth: float) -> tuple[Complexes, Comple
     return np.asarray(zeros, complex), np.asarray(poles, complex)
 
 
-def anti_aliasing(sample_rate: float) -> tuple[Complexes, Complexes]:
+def anti_aliasing_zeros_and_poles(sample_rate: float) -> tuple[Complexes, Complexes]:
     """Return zeros and poles of an elliptic anti-aliasing filter for a sampling rate, Hz."""
     from scipy.signal import ellip, ellipord
 
@@ -186,5 +189,5 @@ def anti_aliasing(sample_rate: float) -> tuple[Complexes, Complexes]:
 
 def filters_in_series(parts: Sequence[tuple[Complexes, Complexes]]) -> AnalogFilter:
     """Return one analog filter that acts as filters one after another."""
-    zeros, poles = (np.concatenate(found) for found in zip(*parts, strict=True))
-    return AnalogFilter.from_zpk(zeros, poles)
+    zeros, poles = (np.concatenate(roots) for roots in zip(*parts, strict=True))
+    return AnalogFilter.from_zeros_and_poles(zeros, poles)

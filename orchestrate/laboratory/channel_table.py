@@ -7,10 +7,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +17,7 @@ from ..files import write_atomically
 from ..lazy import xr
 from ..model.arguments import checked_path
 from ..response.labels import variable
-from .columns import Assignment, Columns, assigned_columns, converted_channels, times_in_s
+from .columns import Assignment, Column, Columns, assign_columns, convert_to_si, times_in_s
 from .conversion import (
     ACCELERATIONS,
     FORCES,
@@ -27,8 +25,8 @@ from .conversion import (
     SPEEDS,
     VOLTAGES,
     ByChannel,
-    by_channel,
-    plain_unit,
+    expand_by_channel,
+    normalize_unit,
 )
 from .record import CHANNELS, SHORT_NAMES
 from .record_checks import is_ascending
@@ -88,42 +86,44 @@ def channels(
     >>> import tempfile, pathlib
     >>> path = pathlib.Path(tempfile.mkdtemp()) / "a.csv"
     >>> _ = path.write_text("Zeit [ms];Tisch [g];oben [g]\n0;0,1;0\n1;0,3;2\n2;-0,2;0\n3;0;-1\n")
-    >>> found = channels(path)
-    >>> found.role.values.tolist(), found.known.values.tolist()[1:]
+    >>> listing = channels(path)
+    >>> listing.role.values.tolist(), listing.known.values.tolist()[1:]
     (['time', 'base', 'face 1'], ['by its name', 'what is left'])
     """
-    setup = ChannelSetup.of(channels)
+    setup = ChannelSetup.from_argument(channels)
     rate = setup.sample_rate if sample_rate is None else sample_rate
-    table = read_columns(checked_path("path", path)).at_rate(rate)
-    assignment = assigned_columns(table, setup.columns)
-    given = {"unit": unit, "sensitivity": sensitivity, "scale": scale, "delay": delay}
-    stated = {name: setup.keyword(name, value) for name, value in given.items()}
-    used = [name for name in assignment.places if name != "time"]
-    words = {name: by_channel(name, value, used, ("time",)) for name, value in stated.items()}
+    table = read_columns(checked_path("path", path)).with_sample_rate(rate)
+    assignment = assign_columns(table, setup.columns)
+    keywords = {"unit": unit, "sensitivity": sensitivity, "scale": scale, "delay": delay}
+    stated = {name: setup.merge_keyword(name, value) for name, value in keywords.items()}
+    used = [name for name in assignment.indices if name != "time"]
+    words = {
+        name: expand_by_channel(name, value, used, ("time",)) for name, value in stated.items()
+    }
     setup = replace(setup, words={**setup.words, **words}, resample=resample or setup.resample)
-    found = described_columns(table, assignment, setup)
+    listing = dataset_of_columns(table, assignment, setup)
     try:
-        converted_channels(table, setup.columns, stated["unit"], stated["sensitivity"], setup.file)
+        convert_to_si(table, setup.columns, stated["unit"], stated["sensitivity"], setup.file)
     except InputError as error:
-        found.attrs["refused"] = str(error)
+        listing.attrs["refused"] = str(error)
     if output is not None:
-        write_channels_toml(found, setup, checked_path("output", output))
-    return found
+        write_channels_toml(listing, setup, checked_path("output", output))
+    return listing
 
 
-def described_columns(table: Columns, assignment: Assignment, setup: ChannelSetup) -> xr.Dataset:
+def dataset_of_columns(table: Columns, assignment: Assignment, setup: ChannelSetup) -> xr.Dataset:
     import xarray as xr
 
-    roles = {place: name for name, place in assignment.places.items()}
+    roles = {index: name for name, index in assignment.indices.items()}
     units = setup.words.get("unit", {})
     rows = []
-    for place, column in enumerate(table.columns):
-        name = roles.get(place)
+    for index, column in enumerate(table.columns):
+        name = roles.get(index)
         unit = str(units.get(name, column.unit)) if name else column.unit
         rms = np.nan if column.text or name == "time" else float(np.std(column.values))
         known = assignment.known[name] if name else NOT_READ
         role = SHORT_NAMES.get(name, name) if name else ""
-        rows.append((role, known, quantity_of(column.values, column.text, unit, role), unit, rms))
+        rows.append((role, known, quantity_of_column(column, unit, role), unit, rms))
     texts = {
         "role": "channel it is read as",
         "known": "how that is known",
@@ -135,57 +135,59 @@ def described_columns(table: Columns, assignment: Assignment, setup: ChannelSetu
     made = {name: variable("column", list(values), "1", text) for (name, text), values in parts}
     names = variable("column", [one.name for one in table.columns], "1", "name in the file")
     rate = table.sample_rate
-    if rate is None and "time" in assignment.places:
-        rate = rate_of(table, assignment.places["time"], units)
+    if rate is None and "time" in assignment.indices:
+        column = table.columns[assignment.indices["time"]]
+        rate = rate_of_time_column(table, column, str(units.get("time", "")))
     title = f"Columns of {Path(table.path).name}"
     words = {"title": title, "sample_rate": rate or 0.0, "refused": ""}
     return xr.Dataset(made, {"column": names}, words)
 
 
-def rate_of(table: Columns, place: int, units: Mapping[str, str]) -> float | None:
-    """Return the sampling rate by a column of times, Hz; None if it has none."""
-    time = times_in_s(table, table.columns[place], str(units.get("time", "")))
+def rate_of_time_column(table: Columns, column: Column, unit: str) -> float | None:
+    """Return the mean sampling rate by a column of times, Hz; None if it has none."""
+    time = times_in_s(table, column, unit)
     if time is None or not time[-1] > time[0]:
         return None
     return float((len(time) - 1) / (time[-1] - time[0]))
 
 
-def quantity_of(values: Any, text: str, unit: str, role: str) -> str:
-    if text:
+def quantity_of_column(column: Column, unit: str, role: str) -> str:
+    """Return a word: text, time, a quantity by the unit, counter or unknown."""
+    if column.text:
         return "text"
     if role == "time":
         return "time"
-    plain = plain_unit(unit)
+    plain = normalize_unit(unit)
     known = [name for name, units in QUANTITIES.items() if plain in units]
-    return known[0] if known else "counter" if is_ascending(values) else "unknown"
+    return known[0] if known else "counter" if is_ascending(column.values) else "unknown"
 
 
-def write_channels_toml(found: xr.Dataset, setup: ChannelSetup, path: Path) -> Path:
+def write_channels_toml(listing: xr.Dataset, setup: ChannelSetup, path: Path) -> Path:
     """Write a setup as TOML; what is not known of the sensors is left to be filled in."""
     of_role = {SHORT_NAMES.get(name, name): name for name in ("time", *CHANNELS)}
-    lines = [f"# {found.attrs['title']}: columns by name or number from 0, units as in the file"]
-    if found.attrs["sample_rate"] and "time" not in found.role.values:
-        lines.append(f"sample_rate = {float(found.attrs['sample_rate'])!r}  # Hz")
+    lines = [f"# {listing.attrs['title']}: columns by name or number from 0, units as in the file"]
+    if listing.attrs["sample_rate"] and "time" not in listing.role.values:
+        lines.append(f"sample_rate = {float(listing.attrs['sample_rate'])!r}  # Hz")
     lines += ["resample = true"] if setup.resample else []
-    for place, role in enumerate(found.role.values.tolist()):
-        one = found.isel(column=place)
-        rms = "" if np.isnan(one.rms.item()) else f", rms {one.rms.item():.4g}"
-        label = f"{one.column.item()}, {one.quantity.item()}{rms}"
+    headings = listing.column.values.tolist()
+    fields = ("role", "known", "quantity", "unit", "rms")
+    rows = zip(headings, *(listing[field].values.tolist() for field in fields), strict=True)
+    for index, (heading, role, known, quantity, unit, rms) in enumerate(rows):
+        label = f"{heading}, {quantity}" + ("" if np.isnan(rms) else f", rms {rms:.4g}")
         if not role:
-            lines.append(f"\n# not read: {label} {one.unit.item()}".rstrip())
+            lines.append(f"\n# not read: {label} {unit}".rstrip())
             continue
         name = of_role[role]
-        lines += [f"\n[{role.replace(' ', '')}]  # {one.known.item()}; {label}"]
-        repeated = found.column.values.tolist().count(one.column.item()) > 1
-        column = place if repeated else one.column.item()
+        lines += [f"\n[{role.replace(' ', '')}]  # {known}; {label}"]
+        column = index if headings.count(heading) > 1 else heading
         lines.append(f"column = {json.dumps(column, ensure_ascii=False)}")
         keys = ("unit",) if name == "time" else (*ACTING, *SENSOR_WORDS)
         for key in keys:
-            value = setup.words.get(key, {}).get(name, one.unit.item() if key == "unit" else "")
-            lacking = key == "sensitivity" and one.quantity.item() == "voltage"
+            value = setup.words.get(key, {}).get(name, unit if key == "unit" else "")
+            lacking = key == "sensitivity" and quantity == "voltage"
             if value != "" or lacking or key in ("unit", *SENSOR_WORDS):
                 usual = "s or ms" if name == "time" else "g, m/s2, mm/s, um, N, V"
                 remark = f"  # write it: {usual}" if (key, value) == ("unit", "") else ""
                 lines.append(f"{key} = {json.dumps(value, ensure_ascii=False)}{remark}")
     text = "\n".join(lines) + "\n"
-    return write_atomically(path, lambda place: place.write_text(text, encoding="utf-8"))
+    return write_atomically(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))

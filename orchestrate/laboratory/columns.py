@@ -24,15 +24,15 @@ from .conversion import (
     SPEEDS,
     VOLTAGES,
     ByChannel,
-    plain_unit,
+    factor_and_derivatives,
+    normalize_unit,
     si_factor,
     text_by_channel,
-    unit_factor,
 )
-from .missing_units import check_units, check_volts, option_of
+from .missing_units import check_sensitivities, check_units, format_by_channel
 from .pieces import Floats
 from .record import CHANNELS, FORCES, SHORT_NAMES
-from .record_checks import first_skipped_row, implausible_times, is_ascending
+from .record_checks import doubt_about_time_unit, first_skipped_row, is_ascending
 from .signals import HERTZ, checked_quantity
 
 Named: TypeAlias = "Mapping[str, str | int] | Sequence[str | int] | None"  # columns by a caller
@@ -97,23 +97,26 @@ TEXTS = {  # what a field is that is no number
 }
 
 
-def names_of_face(number: str, plain: str) -> dict[str, str]:
+def column_patterns_of_face(number: str, number_pattern: str) -> dict[str, str]:
     """Return regular expressions of a face's column names in a resonance curve, by quantity."""
-    motion, alone = f"(?:{MOTION}|{RATIO}){plain}", "|order|harmonic" if number == "1" else ""
+    motion, alone = (
+        f"(?:{MOTION}|{RATIO}){number_pattern}",
+        "|order|harmonic" if number == "1" else "",
+    )
     return {
         f"amplitude{number}": f"{motion}|(?:{MOTION}|{RATIO}){number}order1",
-        f"phase{number}": f"phase{plain}",
+        f"phase{number}": f"phase{number_pattern}",
         f"amplitude{number}_order2": f"(?:{motion}order{alone})2",
         f"amplitude{number}_order3": f"(?:{motion}order{alone})3",
-        f"floor{number}": f"(?:floor|noise){plain}",
+        f"floor{number}": f"(?:floor|noise){number_pattern}",
     }
 
 
 CURVE_NAMES = {
     "frequency": SWEPT,
     "level": f"input|drive|excitation|level|{SENSOR}{BASE}(?:acceleration|amplitude|level)?",
-    **names_of_face("1", "1?"),  # a face that has no number is the first
-    **names_of_face("2", "2"),
+    **column_patterns_of_face("1", "1?"),  # a face that has no number is the first
+    **column_patterns_of_face("2", "2"),
 }
 
 
@@ -138,7 +141,7 @@ class Columns:
     first_row: int = 0  # number of the first values in the file's own count
     attributes: dict[str, Any] = field(default_factory=dict)  # what our own records say
 
-    def at_rate(self, sample_rate: float | None) -> Columns:
+    def with_sample_rate(self, sample_rate: float | None) -> Columns:
         """Return the same columns, sampled at a rate in Hz; None: at the file's own."""
         if sample_rate is None:
             return self
@@ -170,7 +173,7 @@ def is_unit(text: str) -> bool:
     """Return whether a text is a unit that columns of records or resonance curves may have."""
     motions = (ACCELERATIONS, TIMES, SPEEDS, LENGTHS, VOLTAGES, FREQUENCIES, ANGLES)
     known = (*motions, RATIO_UNITS, OF_FORCES[0])
-    return any(plain_unit(text) in units for units in known)
+    return any(normalize_unit(text) in units for units in known)
 
 
 BY_USER, BY_NAME, LEFT, BY_ORDER = "by the caller", "by its name", "what is left", "by its order"
@@ -178,97 +181,99 @@ BY_USER, BY_NAME, LEFT, BY_ORDER = "by the caller", "by its name", "what is left
 
 @dataclass(frozen=True)
 class Assignment:
-    """Say which column the time and each channel is in, and how that is known."""
+    """Index of the column of the time and of each channel, and how that is known."""
 
-    places: dict[str, int]
+    indices: dict[str, int]
     known: dict[str, str]  # one of the words above, by channel
 
-    def text(self, table: Columns) -> str:
-        said = [
+    def format(self, table: Columns) -> str:
+        texts = [
             f'{SHORT_NAMES.get(name, name)} "{table.columns[place].name}"'
             + (f" ({BY_ORDER})" if self.known[name] == BY_ORDER else "")
-            for name, place in self.places.items()
+            for name, place in self.indices.items()
         ]
-        return ", ".join(said)
+        return ", ".join(texts)
 
-    def warn(self, table: Columns, option: str = "channels=") -> None:
+    def warn_of_guesses(self, table: Columns, option: str = "channels=") -> None:
         """Warn of columns that were assigned by their order, or ignored."""
         if not (BY_NAME in self.known.values() or LEFT in self.known.values()):
             return
-        proposed = {n: i for n, i in self.places.items() if self.known[n] == BY_ORDER}
+        proposed = {n: i for n, i in self.indices.items() if self.known[n] == BY_ORDER}
         said = [f'"{table.columns[i].name}" as {SHORT_NAMES[n]}' for n, i in proposed.items()]
-        unread = [f'"{table.columns[i].name}"' for i in unread_columns(table, self.places)]
+        unread = [
+            f'"{table.columns[i].name}"' for i in unassigned_column_indices(table, self.indices)
+        ]
         texts = [f"read {BY_ORDER}: {', '.join(said)}" if said else ""]
         texts += [f"not read: {', '.join(unread)}" if unread else ""]
         if text := "; ".join(filter(None, texts)):
             text = f"{table.path}: {text}; {option} says which column is which"
-            text += self.proposal(table) if unread else ""
+            text += self.suggest_arguments(table) if unread else ""
             warnings.warn(text, UserWarning, stacklevel=5)
 
-    def proposal(self, table: Columns) -> str:
-        """Return the arguments that read the columns left as the faces, or the base, missing."""
-        missing = [name for name in list(CHANNELS)[:3] if name not in self.places]
-        new = dict(zip(missing, unread_columns(table, self.places), strict=False))
+    def suggest_arguments(self, table: Columns) -> str:
+        """Return a text with arguments that read unassigned columns as the missing channels."""
+        missing = [name for name in list(CHANNELS)[:3] if name not in self.indices]
+        new = dict(zip(missing, unassigned_column_indices(table, self.indices), strict=False))
         names = [column.name for column in table.columns]
         unique = {i: name if names.count(name) == 1 else i for i, name in enumerate(names)}
-        places = {name: i for name, i in (self.places | new).items() if name != "time"}
-        columns = option_of([*places], {n: str(unique[i]) for n, i in places.items()})
-        bare = [name for name, i in places.items() if not table.columns[i].unit]
-        unit = f" with unit={option_of(bare, {})}" if bare else ""
+        indices = {name: i for name, i in (self.indices | new).items() if name != "time"}
+        columns = format_by_channel([*indices], {n: str(unique[i]) for n, i in indices.items()})
+        bare = [name for name, i in indices.items() if not table.columns[i].unit]
+        unit = f" with unit={format_by_channel(bare, {})}" if bare else ""
         return f", such as channels={columns}{unit}" if new else ""
 
 
 @dataclass(frozen=True)
-class Channel:
+class ChannelInSI:
     """Hold a channel in SI, and how many derivatives make its acceleration."""
 
     values: Floats
     derivatives: int = 0
 
 
-def converted_channels(
+def convert_to_si(
     table: Columns,
     columns: Named,
     unit: ByChannel = None,
     sensitivity: ByChannel = None,
     setup_file: str = "",
-) -> tuple[Floats | None, dict[str, Channel], dict[str, str]]:
-    """Convert a file's columns to SI: return times in s or None, channels, how they were read."""
-    assignment = assigned_columns(table, columns)
-    places = dict(assignment.places)
-    check_counters(table, places)
-    assignment.warn(table)
-    warn_of_left_out(table)
-    read_as = {"columns": assignment.text(table)}
-    clock = places.pop("time", None)
-    units = text_by_channel("unit", unit, list(places), ("time",))
+) -> tuple[Floats | None, dict[str, ChannelInSI], dict[str, str]]:
+    """Convert a file's columns to SI: return times in s or None, channels, record attributes."""
+    assignment = assign_columns(table, columns)
+    indices = dict(assignment.indices)
+    check_no_samples_skipped(table, indices)
+    assignment.warn_of_guesses(table)
+    warn_of_lines_left_out(table)
+    read_as = {"columns": assignment.format(table)}
+    clock = indices.pop("time", None)
+    units = text_by_channel("unit", unit, list(indices), ("time",))
     time = None if clock is None else times_in_s(table, table.columns[clock], units.get("time", ""))
-    if not places:
+    if not indices:
         text = f"no channel; expected one of {', '.join(CHANNELS)}"
         text += "" if time is None else " besides the times, or sample_rate= if there are no times"
         raise InputError(f"{table.path}: {text}")
-    stated = text_by_channel("sensitivity", sensitivity, list(places))
-    used = {name: table.columns[place] for name, place in places.items()}
+    stated = text_by_channel("sensitivity", sensitivity, list(indices))
+    used = {name: table.columns[place] for name, place in indices.items()}
     of_all = isinstance(sensitivity, str) and "=" not in sensitivity and {*units} - {"time"}
     # not all are in volts where some are
     check_units(table.path, used, units, {} if of_all else stated, setup_file)
-    check_volts(table.path, used, units, stated)
+    check_sensitivities(table.path, used, units, stated)
     channels = {}
     for name, column in used.items():
         own = units.get(name, column.unit)
         sensor = stated.get(name, column.sensitivity)
-        factor, derivatives = unit_factor(
+        factor, derivatives = factor_and_derivatives(
             column_label(table, column), own, sensor, OF_FORCES if name in FORCES else OF_MOTIONS
         )
-        if name in stated and plain_unit(own or "V") not in VOLTAGES:
+        if name in stated and normalize_unit(own or "V") not in VOLTAGES:
             expected = f"expected volts: a sensitivity does not act on a column in {own}"
             raise InputError(f"{column_label(table, column)}: sensitivity {sensor}; {expected}")
-        channels[name] = Channel(scaled_values(table, column, factor), derivatives)
-    return time, channels, read_as | attributes_on_units(used, unit, units)
+        channels[name] = ChannelInSI(scaled_values(table, column, factor), derivatives)
+    return time, channels, read_as | unit_attributes(used, unit, units)
 
 
 def times_in_s(table: Columns, column: Column, unit: str) -> Floats | None:
-    """Return times in s, by the unit given or the file's; None of texts that a rate stands for."""
+    """Return times in s, by ``unit`` or the file's; None of texts if the sampling rate is known."""
     label = column_label(table, column)
     if column.text and table.sample_rate is None:
         text = f"{describe_text(column.text)}; expected numbers in s, or sample_rate="
@@ -276,19 +281,19 @@ def times_in_s(table: Columns, column: Column, unit: str) -> Floats | None:
     if column.text:
         return None
     time = scaled_values(table, column, si_factor(label, unit or column.unit or "s", TIMES))
-    if not (unit or column.unit) and (doubt := implausible_times(time)):
+    if not (unit or column.unit) and (doubt := doubt_about_time_unit(time)):
         warnings.warn(f"{label}: {doubt}", UserWarning, stacklevel=4)
     return time
 
 
-def attributes_on_units(
+def unit_attributes(
     channels: Mapping[str, Column], unit: ByChannel, units: Mapping[str, str]
 ) -> dict[str, str]:
     """Return a record's attributes ``unit``, ``unit_in_file`` (if it differs), ``time_unit``."""
     own = ", ".join(dict.fromkeys(one.unit for one in channels.values() if one.unit))
     used = ", ".join(dict.fromkeys(units.get(name, one.unit) for name, one in channels.items()))
     differs = any(
-        one.unit and plain_unit(one.unit) != plain_unit(units.get(name, one.unit))
+        one.unit and normalize_unit(one.unit) != normalize_unit(units.get(name, one.unit))
         for name, one in channels.items()
     )
     words = {
@@ -299,8 +304,8 @@ def attributes_on_units(
     return {name: text for name, text in words.items() if text or name == "unit"}
 
 
-def column_taken(attributes: Mapping[Any, Any], channel: str) -> str:
-    """Return what a record's attribute ``columns`` says a channel was read from, or its name."""
+def source_column_label(attributes: Mapping[Any, Any], channel: str) -> str:
+    """Return the column that a channel was read from by a record's attributes, or its name."""
     word = re.escape(SHORT_NAMES.get(channel, channel))
     ends = "|".join(map(re.escape, ("time", *SHORT_NAMES.values())))
     pattern = rf'(?:^|, )({word} ".*?")(?=, (?:{ends}) "| \({BY_ORDER}\)|$)'
@@ -314,7 +319,7 @@ def column_label(table: Columns, column: Column) -> str:
 
 
 def scaled_values(table: Columns, column: Column, factor: float) -> Floats:
-    """Return a column as numbers times a unit's factor; raise naming a non-number's row."""
+    """Return a column's numbers times a unit's factor; raise naming the row of another field."""
     if column.text:
         text = f"{describe_text(column.text)}; expected numbers"
         raise InputError(f"{column_label(table, column)}, row {table.first_row}: {text}")
@@ -330,8 +335,8 @@ def scaled_values(table: Columns, column: Column, factor: float) -> Floats:
     return values
 
 
-def assigned_columns(table: Columns, columns: Named) -> Assignment:
-    """Return which columns are the time and the channels.
+def assign_columns(table: Columns, columns: Named) -> Assignment:
+    """Decide which columns are the time and the channels.
 
     - A caller's columns are taken as stated; the time, if not stated, by its name, else the first.
     - Columns with usual names are what these say; several with one name are refused.
@@ -340,21 +345,21 @@ def assigned_columns(table: Columns, columns: Named) -> Assignment:
       their order; more are not read.
     - Where no name is known, all are taken in their order; more columns than channels are refused.
     """
-    refuse_spectra(table, columns)
+    refuse_unnamed_spectra(table, columns)
     wanted = (*(() if table.sample_rate else ("time",)), *CHANNELS)[: 3 + (not table.sample_rate)]
     if columns is not None:
-        places = places_asked_for(table, columns, wanted, ("time", *CHANNELS))
-        if "time" in wanted and "time" not in places:
-            places["time"] = places_by_name(table, {"time": NAMES["time"]}).get("time", 0)
-        return Assignment(places, dict.fromkeys(places, BY_USER))
-    known = channels_by_name(table)
-    if known.places.keys() & set(CHANNELS):
+        indices = requested_column_indices(table, columns, wanted, ("time", *CHANNELS))
+        if "time" in wanted and "time" not in indices:
+            indices["time"] = column_indices_by_name(table, {"time": NAMES["time"]}).get("time", 0)
+        return Assignment(indices, dict.fromkeys(indices, BY_USER))
+    known = assign_columns_by_name(table)
+    if known.indices.keys() & set(CHANNELS):
         return known
-    places = places_by_order(table, wanted)
-    return Assignment(places, dict.fromkeys(places, BY_ORDER))
+    indices = column_indices_by_order(table, wanted)
+    return Assignment(indices, dict.fromkeys(indices, BY_ORDER))
 
 
-def places_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, int]:
+def column_indices_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, int]:
     """Return the column index of each quantity by order; refuse directions and further columns."""
     numbers = [i for i, one in enumerate(table.columns) if not one.text]
     if "time" in wanted:
@@ -364,20 +369,20 @@ def places_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, int]:
     names = (table.columns[i].name.lower() for i in numbers)
     stems = [name[:-1] for name in names if name.endswith(("x", "y", "z"))]
     some = dict(zip(wanted, (one.name for one in table.columns), strict=False))
-    expected = f"expected channels=, such as channels={option_of(wanted[:3], some)}"
+    expected = f"expected channels=, such as channels={format_by_channel(wanted[:3], some)}"
     if len(stems) > len(set(stems)):
-        text = f"directions of one sensor among the columns {column_names(table)}"
+        text = f"directions of one sensor among the columns {format_column_names(table)}"
         raise InputError(f"{table.path}: {text}; {expected}")
     if len(numbers) > len(wanted):
-        text = f"{len(table.columns)} columns {column_names(table)}"
+        text = f"{len(table.columns)} columns {format_column_names(table)}"
         raise InputError(f"{table.path}: {text}; {expected}")
     return dict(zip(wanted, numbers, strict=False))
 
 
-def check_counters(table: Columns, places: Mapping[str, int]) -> None:
-    """Check that no other column is a counter that misses samples."""
+def check_no_samples_skipped(table: Columns, indices: Mapping[str, int]) -> None:
+    """Raise if an unassigned column is a counter that skips numbers."""
     for i, column in enumerate(table.columns):
-        row = None if i in places.values() or column.text else first_skipped_row(column.values)
+        row = None if i in indices.values() or column.text else first_skipped_row(column.values)
         if row is not None:
             text = f"{column.values[row]:.9g} after {column.values[row - 1]:.9g}"
             expected = "expected equal steps: samples are lost, cut the record there"
@@ -385,11 +390,11 @@ def check_counters(table: Columns, places: Mapping[str, int]) -> None:
             raise InputError(f"{label}, row {row + table.first_row}: {text}; {expected}")
 
 
-def refuse_spectra(table: Columns, columns: Named) -> None:
+def refuse_unnamed_spectra(table: Columns, columns: Named) -> None:
     """Raise of a file with spectra unless its times and channels are named, by users or usually."""
     if not (spectra := table.attributes.get("spectra")):
         return
-    usual = places_by_name(table, NAMES if columns is None else {"time": NAMES["time"]})
+    usual = column_indices_by_name(table, NAMES if columns is None else {"time": NAMES["time"]})
     by_user = columns is not None and ("time" in columns or not isinstance(columns, Mapping))
     if columns is None:
         named = "time" in usual and len(usual) > 1
@@ -400,31 +405,31 @@ def refuse_spectra(table: Columns, columns: Named) -> None:
         raise InputError(f"{table.path}: {spectra}; {text}")
 
 
-def warn_of_left_out(table: Columns) -> None:
+def warn_of_lines_left_out(table: Columns) -> None:
     """Warn of lines after the numbers that hold no numbers."""
     if text := table.attributes.get("left_out"):
         warnings.warn(f"{table.path}, {text}", UserWarning, stacklevel=4)
 
 
-def unread_columns(table: Columns, places: Mapping[str, int]) -> list[int]:
-    """Return the indices of columns that may be channels, by their unit or without one."""
+def unassigned_column_indices(table: Columns, indices: Mapping[str, int]) -> list[int]:
+    """Return the indices of unassigned columns that may be channels by their unit, or have none."""
     units = {"", *ACCELERATIONS, *SPEEDS, *LENGTHS, *VOLTAGES}
     return [
         i
         for i, one in enumerate(table.columns)
-        if not (i in places.values() or one.text or is_ascending(one.values))
-        and plain_unit(one.unit) in units
+        if not (i in indices.values() or one.text or is_ascending(one.values))
+        and normalize_unit(one.unit) in units
     ]
 
 
-def column_names(table: Columns) -> str:
+def format_column_names(table: Columns) -> str:
     """Return the names of a file's first columns, and how many more there are, as a text."""
     names = [column.name for column in table.columns]
     more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
     return ", ".join(names[:MOST_NAMES]) + more
 
 
-def places_asked_for(
+def requested_column_indices(
     table: Columns,
     columns: Mapping[str, str | int] | Sequence[str | int],
     order: Sequence[str],
@@ -440,36 +445,36 @@ def places_asked_for(
     return {name: column_index(table, wish) for name, wish in columns.items()}
 
 
-def channels_by_name(table: Columns) -> Assignment:
+def assign_columns_by_name(table: Columns) -> Assignment:
     """Assign time and channels by their usual names, then the columns left."""
-    places = places_by_name(table, NAMES)
-    if "time" not in places and not table.sample_rate:
-        units = [plain_unit(one.unit) for one in table.columns]
+    indices = column_indices_by_name(table, NAMES)
+    if "time" not in indices and not table.sample_rate:
+        units = [normalize_unit(one.unit) for one in table.columns]
         density = [unit for unit in units if re.fullmatch(r".+/\W*hz", unit)]
-        if density or "hz" in units or places_by_name(table, {"frequency": SWEPT}):
+        if density or "hz" in units or column_indices_by_name(table, {"frequency": SWEPT}):
             kind = "a spectral density" if density else "an FRF, a spectrum or a resonance curve"
-            text = f"{kind} over the frequency in the columns {column_names(table)}"
+            text = f"{kind} over the frequency in the columns {format_column_names(table)}"
             expected = "expected accelerations over time; read_curve reads resonance curves"
             raise InputError(f"{table.path}: {text}; {expected}")
-    known = dict.fromkeys(places, BY_NAME)
-    rest = unread_columns(table, places)
-    channels = (*rest, *(i for name, i in places.items() if name != "time"))
+    known = dict.fromkeys(indices, BY_NAME)
+    rest = unassigned_column_indices(table, indices)
+    channels = (*rest, *(i for name, i in indices.items() if name != "time"))
     if len({bool(table.columns[i].unit) for i in channels}) != 1:
-        return Assignment(places, known)
-    missing = [name for name in ("box_acceleration", "acceleration1") if name not in places]
-    if len(missing) == len(rest) == 1 and not FORCES.keys() & places.keys():
-        return Assignment(places | {missing[0]: rest[0]}, known | {missing[0]: LEFT})
-    faces = [name for name in ("acceleration1", "acceleration2") if name not in places]
-    if {"box_acceleration", *FORCES} & places.keys() and 0 < len(rest) <= len(faces) == 2:
+        return Assignment(indices, known)
+    missing = [name for name in ("box_acceleration", "acceleration1") if name not in indices]
+    if len(missing) == len(rest) == 1 and not FORCES.keys() & indices.keys():
+        return Assignment(indices | {missing[0]: rest[0]}, known | {missing[0]: LEFT})
+    faces = [name for name in ("acceleration1", "acceleration2") if name not in indices]
+    if {"box_acceleration", *FORCES} & indices.keys() and 0 < len(rest) <= len(faces) == 2:
         proposed = dict(zip(faces, rest, strict=False))
-        return Assignment(places | proposed, known | dict.fromkeys(proposed, BY_ORDER))
-    return Assignment(places, known)
+        return Assignment(indices | proposed, known | dict.fromkeys(proposed, BY_ORDER))
+    return Assignment(indices, known)
 
 
-def places_by_name(table: Columns, names: Mapping[str, str]) -> dict[str, int]:
+def column_indices_by_name(table: Columns, names: Mapping[str, str]) -> dict[str, int]:
     """Return the column index of each quantity by its usual names; raise where several have one."""
     plain = [re.sub(r"[\W_]", "", column.name.lower()) for column in table.columns]
-    places = {}
+    indices = {}
     for name, pattern in names.items():
         fits = [i for i, one in enumerate(plain) if re.fullmatch(pattern, one)]
         fits = [i for i in fits if not table.columns[i].text] or fits
@@ -479,8 +484,8 @@ def places_by_name(table: Columns, names: Mapping[str, str]) -> dict[str, int]:
             text = f"columns {which} may each be {SHORT_NAMES.get(name, name)}"
             raise InputError(f"{table.path}: {text}; expected channels=, which of them is which")
         if fits:
-            places[name] = fits[0]
-    return places
+            indices[name] = fits[0]
+    return indices
 
 
 def column_index(table: Columns, wish: str | int) -> int:
@@ -496,5 +501,5 @@ def column_index(table: Columns, wish: str | int) -> int:
     number = isinstance(wish, int) and not isinstance(wish, bool)
     if number and 0 <= int(wish) < len(names):
         return int(wish)
-    text = f"expected one of {column_names(table)}, or 0 to {len(names) - 1}"
+    text = f"expected one of {format_column_names(table)}, or 0 to {len(names) - 1}"
     raise InputError(f"{table.path}: no column {wish!r}; {text}")

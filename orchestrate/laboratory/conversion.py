@@ -52,18 +52,18 @@ ALL_OF = {"face": ("acceleration1", "acceleration2"), "force": ("force1", "force
 ByChannel = str | float | Mapping[str, Any] | None  # as an argument: of all, or by channel
 
 
-def plain_unit(text: str) -> str:
+def normalize_unit(text: str) -> str:
     plain = text.strip().lower().replace("\u00b2", "2").replace("\u207b", "-")
     return plain.translate(str.maketrans("", "", "^*_. \u00b7[]()"))
 
 
-def by_channel(
-    name: str, argument: ByChannel, channels: Sequence[str], also: Sequence[str] = ()
+def expand_by_channel(
+    name: str, argument: ByChannel, channels: Sequence[str], only_if_named: Sequence[str] = ()
 ) -> dict[str, Any]:
-    """Return an argument by channel: of all, a mapping, or a text ``base=V,face=mm/s``.
+    """Expand an argument to a value by channel: of all, a mapping, or ``base=V,face=mm/s``.
 
     ``face`` and ``force`` are of all such channels that are not named themselves; those in
-    ``also`` have it only where they are named.
+    ``only_if_named`` have it only where they are named.
     """
     if argument is None:
         return {}
@@ -82,7 +82,7 @@ def by_channel(
         word = str(key).strip().lower().replace(" ", "")
         plain, value = CALLED.get(word, ""), value.strip() if isinstance(value, str) else value
         several = [one for one in ALL_OF.get(word, ()) if one in channels]
-        if plain not in (known := (*channels, *also)) and not several:
+        if plain not in (known := (*channels, *only_if_named)) and not several:
             text = f"expected {', '.join(word for word, one in CALLED.items() if one in known)}"
             if plain not in ("", "time"):
                 text = f'no column is read as it; channels="{word}=COLUMN,..." names it, or {text}'
@@ -93,10 +93,10 @@ def by_channel(
 
 
 def text_by_channel(
-    name: str, argument: ByChannel, channels: Sequence[str], also: Sequence[str] = ()
+    name: str, argument: ByChannel, channels: Sequence[str], only_if_named: Sequence[str] = ()
 ) -> dict[str, str]:
     """Return texts by channel; raise if one is no text."""
-    texts = by_channel(name, argument, channels, also)
+    texts = expand_by_channel(name, argument, channels, only_if_named)
     for channel, value in texts.items():
         if not isinstance(value, str):
             raise InputError(f"{name} of {channel} = {value!r}: expected a text in quotes")
@@ -108,7 +108,7 @@ def number_by_channel(
 ) -> dict[str, float]:
     """Return numbers by channel; raise unless their sizes are from ``smallest`` to ``LARGEST``."""
     numbers = {}
-    for channel, value in by_channel(name, argument, channels).items():
+    for channel, value in expand_by_channel(name, argument, channels).items():
         try:
             numbers[channel] = float(value)
         except NOT_NUMBERS:
@@ -119,35 +119,39 @@ def number_by_channel(
     return numbers
 
 
-def unit_factor(
-    label: str, unit: str, sensitivity: str = "", known: Tables = OF_MOTIONS
+def factor_and_derivatives(
+    label: str, unit: str, sensitivity: str = "", tables: Tables = OF_MOTIONS
 ) -> tuple[float, int]:
     """Return the factor from a column's unit to SI, and how many derivatives make acceleration."""
-    plain = plain_unit(unit)
+    plain = normalize_unit(unit)
     if plain in VOLTAGES or (not plain and sensitivity):
-        return factor_of_voltage(label, unit or "V", sensitivity, known)
-    for derivatives, factors in known.items():
+        return voltage_factor_and_derivatives(label, unit or "V", sensitivity, tables)
+    for derivatives, factors in tables.items():
         if plain in factors:
             return factors[plain], derivatives
-    names = "m/s2, g, mm/s, um, V" if known is OF_MOTIONS else "N, kN, V"
+    names = "m/s2, g, mm/s, um, V" if tables is OF_MOTIONS else "N, kN, V"
     raise InputError(f"{label}: unit = {unit!r}; expected one such as {names}: give it by unit=")
 
 
-def factor_of_voltage(label: str, unit: str, sensitivity: str, known: Tables) -> tuple[float, int]:
-    """Return the factor of a voltage by its sensitivity, such as ``100 mV/g``."""
-    usual = "100 mV/g or 50 mV/(mm/s)" if known is OF_MOTIONS else "22 mV/N"
+def voltage_factor_and_derivatives(
+    label: str, unit: str, sensitivity: str, tables: Tables
+) -> tuple[float, int]:
+    """Return the same of a voltage, by its sensitivity, such as ``100 mV/g``."""
+    usual = "100 mV/g or 50 mV/(mm/s)" if tables is OF_MOTIONS else "22 mV/N"
     expected = f"expected one such as {usual}, or base=... for one channel: give it by sensitivity="
     parts = SENSITIVITY.fullmatch(sensitivity.strip())
-    unit_below = plain_unit(parts["unit"]) if parts else ""
-    derivatives = next((n for n, factors in known.items() if unit_below in factors), None)
+    unit_below = normalize_unit(parts["unit"]) if parts else ""
+    derivatives = next((n for n, factors in tables.items() if unit_below in factors), None)
     number = float(parts["number"].replace(",", ".")) if parts else 0.0
     if parts is None or derivatives is None or not number:
         raise InputError(f"{label}: sensitivity {sensitivity!r}; {expected}")
-    volts = number * VOLTAGES[plain_unit(parts["volts"])]
-    return VOLTAGES[plain_unit(unit)] * known[derivatives][unit_below] / volts, derivatives
+    volts = number * VOLTAGES[normalize_unit(parts["volts"])]
+    return VOLTAGES[normalize_unit(unit)] * tables[derivatives][unit_below] / volts, derivatives
 
 
-def differentiated(values: Floats, rate: float, derivatives: int, delay: float = 0.0) -> Floats:
+def differentiate_and_advance(
+    values: Floats, rate: float, derivatives: int, delay: float = 0.0
+) -> Floats:
     """Return a channel's derivative of an order, earlier by a delay in s, by its spectrum."""
     from scipy.fft import irfft, rfft, rfftfreq
 
@@ -163,11 +167,11 @@ def differentiated(values: Floats, rate: float, derivatives: int, delay: float =
     return np.asarray(made[: len(values)] + line.get(derivatives, 0.0))
 
 
-def si_factor(label: str, unit: str, known: Mapping[str, float]) -> float:
-    if plain_unit(unit) not in known:
+def si_factor(label: str, unit: str, factors: Mapping[str, float]) -> float:
+    if normalize_unit(unit) not in factors:
         usual = ("ms", "rad/s", "deg")
-        names = ", ".join(list(known)[:1] + [name for name in usual if name in known])
+        names = ", ".join(list(factors)[:1] + [name for name in usual if name in factors])
         text = f"unit = {unit!r}" if unit else "no unit"
-        mend = 'give it by unit="time=..."' if "s" in known else "mend it in the file"
+        mend = 'give it by unit="time=..."' if "s" in factors else "mend it in the file"
         raise InputError(f"{label}: {text}; expected one such as {names}: {mend}")
-    return known[plain_unit(unit)]
+    return factors[normalize_unit(unit)]

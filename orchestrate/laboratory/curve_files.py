@@ -20,16 +20,16 @@ from .columns import (
     Assignment,
     Column,
     Columns,
+    column_indices_by_name,
     column_label,
-    column_names,
-    places_asked_for,
-    places_by_name,
-    warn_of_left_out,
+    format_column_names,
+    requested_column_indices,
+    warn_of_lines_left_out,
 )
-from .conversion import plain_unit, si_factor
+from .conversion import normalize_unit, si_factor
 from .pieces import Floats
 from .record_files import file_kind, read_columns
-from .resonance_curve import CurveColumns, acceleration_factor, made_curve
+from .resonance_curve import CurveColumns, acceleration_factor, make_curve
 from .signals import LEVEL, checked_quantity
 
 
@@ -100,64 +100,65 @@ def read_curve(
     if file_kind(path) != "csv":
         raise InputError(f"{path}: expected columns of text (.csv, .txt, .tsv, .asc, .dat)")
     table = read_columns(path, True)  # fields may be empty
-    warn_of_left_out(table)
-    places = curve_places(table, columns)
+    warn_of_lines_left_out(table)
+    indices = curve_column_indices(table, columns)
     known = BY_NAME if columns is None else BY_USER
-    assignment = Assignment(places, dict.fromkeys(places, known))
-    assignment.warn(table, "columns=")
-    made = curve_columns(table, places, unit, level)
+    assignment = Assignment(indices, dict.fromkeys(indices, known))
+    assignment.warn_of_guesses(table, "columns=")
+    made = curve_columns(table, indices, unit, level)
     words = {"title": f"Resonance curve {path.name}", "source": path.name}
-    words["columns"] = assignment.text(table)
+    words["columns"] = assignment.format(table)
     try:
-        return made_curve(made, relative, direction, words)
+        return make_curve(made, relative, direction, words)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
 
-def curve_places(
+def curve_column_indices(
     table: Columns, columns: Mapping[str, str | int] | Sequence[str | int] | None
 ) -> dict[str, int]:
-    """Return the column index of each quantity of a curve, as asked for or by usual names."""
+    """Return the column index of each quantity of a curve, as requested or by usual names."""
     if columns is None:
-        places = places_by_name(table, CURVE_NAMES)
+        indices = column_indices_by_name(table, CURVE_NAMES)
     else:
-        places = places_asked_for(table, columns, tuple(CURVE_NAMES), tuple(CURVE_NAMES))
-    lacking = [] if "frequency" in places else ["frequency"]
-    lacking += [] if {"amplitude1", "amplitude2"} & set(places) else ["amplitude1"]
+        indices = requested_column_indices(table, columns, tuple(CURVE_NAMES), tuple(CURVE_NAMES))
+    lacking = [] if "frequency" in indices else ["frequency"]
+    lacking += [] if {"amplitude1", "amplitude2"} & set(indices) else ["amplitude1"]
     if lacking:
         text = "expected columns=, which of them is which"
-        names = column_names(table)
+        names = format_column_names(table)
         raise InputError(f"{table.path}: no {lacking[0]} among the columns {names}; {text}")
-    return places
+    return indices
 
 
 def curve_columns(
-    table: Columns, places: Mapping[str, int], unit: str | None, level: float | None
+    table: Columns, indices: Mapping[str, int], unit: str | None, level: float | None
 ) -> CurveColumns:
-    at = {name: table.columns[place] for name, place in places.items()}
-    faces = [f"amplitude{n}" for n in "12" if f"amplitude{n}" in at]
-    frequency = scaled_column(table, at["frequency"], "Hz", FREQUENCIES)
-    phases = {name: at.get(name.replace("amplitude", "phase")) for name in faces}
-    floors = {name: at.get(name.replace("amplitude", "floor")) for name in faces}
+    by_name = {name: table.columns[index] for name, index in indices.items()}
+    faces = [f"amplitude{n}" for n in "12" if f"amplitude{n}" in by_name]
+    frequency = column_in_si(table, by_name["frequency"], "Hz", FREQUENCIES)
+    phases = {name: by_name.get(name.replace("amplitude", "phase")) for name in faces}
+    floors = {name: by_name.get(name.replace("amplitude", "floor")) for name in faces}
     return CurveColumns(
         frequency=frequency,
-        level=base_level(table, at.get("level"), unit, level, frequency),
-        amplitudes={name: face_orders(name, at) for name in faces},
+        level=base_level(table, by_name.get("level"), unit, level, frequency),
+        amplitudes={name: stack_face_orders(name, by_name) for name in faces},
         phases={name: phase_in_rad(table, one) for name, one in phases.items() if one},
         floors={name: one.values for name, one in floors.items() if one},
-        units={name: unit or at[name].unit for name in faces},
+        units={name: unit or by_name[name].unit for name in faces},
         first_row=table.first_row,
     )
 
 
-def face_orders(name: str, at: Mapping[str, Column]) -> Floats:
+def stack_face_orders(name: str, by_name: Mapping[str, Column]) -> Floats:
     """Return orders 1, 2, 3 of a face in the file's unit, NaN where there is no column."""
-    columns = [at.get(f"{name}{more}") for more in ("", "_order2", "_order3")]
+    first = by_name[name]
+    columns = [by_name.get(f"{name}{order}") for order in ("", "_order2", "_order3")]
     for one in columns[1:]:
-        if one is not None and plain_unit(one.unit) != plain_unit(at[name].unit):
-            text = f"in {one.unit or 'no unit'}; expected {at[name].unit or 'none'}, as order 1"
+        if one is not None and normalize_unit(one.unit) != normalize_unit(first.unit):
+            text = f"in {one.unit or 'no unit'}; expected {first.unit or 'none'}, as order 1"
             raise InputError(f'column "{one.name}": {text}')
-    missing = np.full(len(at[name].values), np.nan)
+    missing = np.full(len(first.values), np.nan)
     return np.stack([missing if one is None else one.values for one in columns])
 
 
@@ -172,9 +173,9 @@ def base_level(
         raise InputError(f"{table.path}: {text}{given}; {expected}")
     if column is None:
         return float(checked_quantity(LEVEL, "level", level))
-    own = column.unit or (unit if unit and plain_unit(unit) not in RATIO_UNITS else "")
+    own = column.unit or (unit if unit and normalize_unit(unit) not in RATIO_UNITS else "")
     label = column_label(table, column)
-    ratio = plain_unit(own) in RATIO_UNITS  # of a level there is none
+    ratio = normalize_unit(own) in RATIO_UNITS  # of a level there is none
     factor = acceleration_factor(label, "" if ratio else own, frequency, frequency)
     return np.asarray(factor * column.values)
 
@@ -183,10 +184,12 @@ def phase_in_rad(table: Columns, column: Column) -> Floats:
     """Convert a column of phases to rad; without a unit, large numbers are in degrees."""
     # a phase without a unit beyond 2 pi and some
     degrees = np.nanmax(np.abs(column.values), initial=0.0) > 7.0
-    return scaled_column(table, column, "deg" if degrees else "rad", ANGLES)
+    return column_in_si(table, column, "deg" if degrees else "rad", ANGLES)
 
 
-def scaled_column(table: Columns, column: Column, usual: str, known: Mapping[str, float]) -> Floats:
-    """Convert a column to SI by its own unit, or by the usual one where it has none."""
-    factor = si_factor(column_label(table, column), column.unit or usual, known)
+def column_in_si(
+    table: Columns, column: Column, default_unit: str, factors: Mapping[str, float]
+) -> Floats:
+    """Convert a column to SI by its own unit, or by the default where it has none."""
+    factor = si_factor(column_label(table, column), column.unit or default_unit, factors)
     return factor * column.values

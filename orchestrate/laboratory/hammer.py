@@ -9,7 +9,7 @@ from ..model.arguments import checked_integer
 from ..model.ranges import Quantity
 from .pieces import Pieces
 from .shock import Shock
-from .signals import SECONDS, ExcitationSignal, check_fields, checked_quantity
+from .signals import SECONDS, ExcitationSignal, check_and_store_fields, checked_quantity
 
 LISTENED = 1000.0  # widths from the knock to the end of the record
 
@@ -50,7 +50,7 @@ class Hammer(ExcitationSignal):
     def __post_init__(self) -> None:
         put = object.__setattr__
         peak, at = Quantity("peak", "N", "", -1e12, 1e12), Quantity("at", "s", "", 0.0, 1e7)
-        check_fields(self, peak=peak, width=SECONDS, at=at)
+        check_and_store_fields(self, peak=peak, width=SECONDS, at=at)
         put(self, "half", checked_integer("half", self.half, 1, 2))
         end = self.at + LISTENED * self.width
         put(self, "duration", checked_quantity(SECONDS, "duration", self.duration or end))

@@ -123,15 +123,15 @@ class LevelControl(InputControl):
         cubic = (s, rate * c, -(rate**2) * s, -(rate**3) * c)
         return cubic, (amplitude, sine, cosine, off, aborted)
 
-    def aborted(self, state: ControllerState) -> float:
+    def abort_time(self, state: ControllerState) -> float:
         """Return the time of the abort, s; NaN if there was none."""
         return state[-1]
 
 
-def controlled(
+def sine_and_control(
     structure: Structure, excitation: object, shaker: Shaker
 ) -> tuple[Sine, LevelControl]:
-    """Return the sine that a shaker's table is to have, and its control."""
+    """Return the sine that a shaker's table is to follow, and its control."""
     if not isinstance(shaker, Shaker):
         raise InputError(f"shaker = {shaker!r}: expected a Shaker")
     if isinstance(excitation, LevelControl):
@@ -146,7 +146,7 @@ def controlled(
     return excitation, LevelControl(sine=excitation, start=start, limit=limit or math.inf)
 
 
-def shake_on(
+def shake_on_shaker(
     structure: Structure,
     excitation: object,
     shaker: Shaker,
@@ -154,8 +154,8 @@ def shake_on(
     start: ArrayLike | None,
     running: Mapping[str, Any],
 ) -> xr.Dataset:
-    """Shake a structure on a shaker whose table is controlled; return what `shake` does."""
-    sine, control = controlled(structure, excitation, shaker)
+    """Shake a structure on a shaker with a controlled table; return a result as `shake` does."""
+    sine, control = sine_and_control(structure, excitation, shaker)
     rate = checked_positive("sample_rate", sample_rate or sine.usual_rate)
     own = math.sqrt(max(structure.k1 / structure.m1, structure.k2 / structure.m2)) / TURN
     every = math.ceil(32.0 * max(own, 0.05 * sine.usual_rate) / rate)

@@ -22,7 +22,7 @@ FACTORIALS = np.array([1.0, 1.0, 2.0, 6.0])
 ERROR = 3072.0  # 4! 2^7: over it, h^4 max|a''''|
 
 
-def phase_step(accuracy: float) -> float:
+def max_phase_step(accuracy: float) -> float:
     """Return the longest piece of a sine, rad, whose cubic has a relative error of ``accuracy``."""
     return float((ERROR * accuracy) ** 0.25)
 
@@ -37,8 +37,8 @@ class Pieces:
     error: float  # bound of the distance to the signal that they stand for, m/s2
 
     @classmethod
-    def from_values(cls, nodes: Floats, values: Floats, error: float) -> Pieces:
-        """Interpolate values inside each piece by its cubic."""
+    def from_chebyshev_values(cls, nodes: Floats, values: Floats, error: float) -> Pieces:
+        """Make the cubics through values at the four `POINTS` of each piece."""
         powers = np.diff(nodes)[:, None] ** np.arange(4)
         return cls(nodes, values @ MONOMIALS.T * FACTORIALS / powers, error)
 
@@ -46,7 +46,7 @@ class Pieces:
     def interpolate(cls, nodes: Floats, signal: Callable[[Floats], Floats], error: float) -> Pieces:
         """Interpolate a function of time by cubics."""
         lengths = np.diff(nodes)[:, None]
-        return cls.from_values(nodes, signal(nodes[:-1, None] + POINTS * lengths), error)
+        return cls.from_chebyshev_values(nodes, signal(nodes[:-1, None] + POINTS * lengths), error)
 
     @property
     def duration(self) -> float:
@@ -55,13 +55,13 @@ class Pieces:
 
     def __call__(self, times: Floats) -> Floats:
         """Return the acceleration at times, m/s2; zero after the end, at it the last piece's."""
-        values = self.taylor(times)[:, 0]
+        values = self.derivatives_at(times)[:, 0]
         length = self.nodes[-1] - self.nodes[-2]
         last = self.derivatives[-1] * length ** np.arange(4) / FACTORIALS
         return np.where(times == self.nodes[-1], last.sum(), values)
 
-    def taylor(self, times: Floats) -> Floats:
-        """Return value and derivatives at times, of the piece that begins there or before."""
+    def derivatives_at(self, times: Floats) -> Floats:
+        """Return value and three derivatives at times, shape (n, 4); zero from the end on."""
         last = len(self.derivatives) - 1
         index = np.clip(np.searchsorted(self.nodes, times, side="right") - 1, 0, last)
         t = times - self.nodes[index]
@@ -78,17 +78,17 @@ class Pieces:
     def __add__(self, other: Pieces) -> Pieces:
         nodes = np.union1d(self.nodes, other.nodes)
         starts = nodes[:-1]
-        total = self.taylor(starts) + other.taylor(starts)
+        total = self.derivatives_at(starts) + other.derivatives_at(starts)
         return Pieces(nodes, total, self.error + other.error)
 
 
-def equal_nodes(first: float, last: float, longest: float) -> Floats:
-    """Divide an interval into equal pieces not longer than ``longest``; return their ends."""
-    count = max(1, math.ceil((last - first) / longest))
+def equal_nodes(first: float, last: float, max_step: float) -> Floats:
+    """Divide an interval into equal pieces not longer than ``max_step``; return their ends."""
+    count = max(1, math.ceil((last - first) / max_step))
     return first + (last - first) * np.arange(count + 1) / count
 
 
-def subdivided(nodes: Floats, parts: NDArray[np.int_]) -> Floats:
+def subdivide(nodes: Floats, parts: NDArray[np.int_]) -> Floats:
     """Cut each piece between two nodes into equal parts; return all nodes."""
     piece = np.repeat(np.arange(len(parts)), parts)
     part = np.arange(len(piece)) - np.repeat(np.cumsum(parts) - parts, parts)

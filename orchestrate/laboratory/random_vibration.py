@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..constants import TURN
 from ..errors import InputError
 from . import signals
-from .pieces import ERROR, POINTS, Floats, Pieces, phase_step
+from .pieces import ERROR, POINTS, Floats, Pieces, max_phase_step
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,18 +53,18 @@ class Random(signals.ExcitationSignal):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "psd", signals.checked_profile("psd", self.psd, signals.DENSITY))
-        signals.check_fields(self, duration=signals.SECONDS)
+        signals.check_and_store_fields(self, duration=signals.SECONDS)
         whole = isinstance(self.seed, (int, np.integer)) and not isinstance(self.seed, bool)
         if not whole or self.seed < 0:
             raise InputError(f"seed = {self.seed!r}: expected a whole number >= 0")
-        amplitudes = self._amplitudes()
+        amplitudes = self._sine_amplitudes()
         if not amplitudes.any():
             band = f"{self.psd[0][0]:g} to {self.psd[-1][0]:g} Hz"
             text = f"no multiple of 1/duration lies within {band}; expected a longer one"
             raise InputError(f"duration = {self.duration!r} s: {text}")
         rms = float(np.sqrt(0.5 * (amplitudes**2).sum()))
         if self.rms is not None:
-            signals.check_fields(self, rms=signals.LEVEL)
+            signals.check_and_store_fields(self, rms=signals.LEVEL)
             scaled = tuple((f, value * (self.rms / rms) ** 2) for f, value in self.psd)
             object.__setattr__(self, "psd", scaled)
         object.__setattr__(self, "rms", self.rms or rms)
@@ -77,27 +77,27 @@ class Random(signals.ExcitationSignal):
     def usual_rate(self) -> float:
         return 10.0 * self.psd[-1][0]
 
-    def _amplitudes(self) -> Floats:
+    def _sine_amplitudes(self) -> Floats:
         """Return the amplitudes of the sines at 0, 1, 2 ... over the duration, m/s2."""
         count = math.floor(self.psd[-1][0] * self.duration * (1.0 + 1e-12)) + 1
         if count > signals.MOST_PIECES // 20:
             most = (signals.MOST_PIECES // 20) / self.psd[-1][0]
             raise InputError(f"duration = {self.duration!r} s: expected at most {most:.3g} s")
-        density = signals.along_profile(self.psd, np.arange(count) / self.duration)
+        density = signals.interpolate_profile(self.psd, np.arange(count) / self.duration)
         return np.sqrt(2.0 * density / self.duration)
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
         """Return equal pieces: values at their Chebyshev points by inverse Fourier transforms."""
         from scipy.fft import next_fast_len
 
-        amplitudes = self._amplitudes()
+        amplitudes = self._sine_amplitudes()
         order = np.arange(len(amplitudes))
         phases = np.random.default_rng(self.seed).uniform(0.0, TURN, len(amplitudes))
         lines = 0.5 * amplitudes * np.exp(1j * phases)
         omega = TURN * order / self.duration
         # as a sine whose fourth derivative has the same ratio to it, by root mean squares
         ratio = np.linalg.norm(amplitudes * omega**4) / np.linalg.norm(amplitudes)
-        longest = phase_step(accuracy) / ratio**0.25
+        longest = max_phase_step(accuracy) / ratio**0.25
         least = max(math.ceil(self.duration / longest), 4 * len(lines))
         count = int(next_fast_len(least, real=True))
         step = self.duration / count
@@ -111,4 +111,4 @@ class Random(signals.ExcitationSignal):
         rise = 1.0 / math.cos(math.pi * (len(lines) - 1) / count)
         error = step**4 * np.abs(signal_at(0.0, omega**4)).max() * rise / ERROR
         nodes = self.duration * np.arange(count + 1) / count
-        return Pieces.from_values(nodes, values, float(error))
+        return Pieces.from_chebyshev_values(nodes, values, float(error))

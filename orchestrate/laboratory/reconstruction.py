@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..lazy import xr
 from ..model import Structure
-from .analog_filter import Cells
+from .analog_filter import PolynomialSignal
 from .pieces import Floats, Pieces
 from .record import FORCES
 
@@ -58,34 +58,40 @@ class Motion:
             history.impulse.values[kept],
             history.sticks.values.astype(bool)[kept],
             drives,
-            steady_acceleration(history),
+            steady_box_acceleration(history),
         )
 
-    def driven(self, channel: str, times: Floats) -> Floats:
-        """Compute a channel of the excitation and its derivatives, shape (n, 4); else 0."""
-        return self.pieces.taylor(times) if channel == self.drives else np.zeros((len(times), 4))
+    def _driving_derivatives(self, channel: str, times: Floats) -> Floats:
+        """Compute a channel of the excitation and its derivatives, shape (n, 4)."""
+        return (
+            self.pieces.derivatives_at(times)
+            if channel == self.drives
+            else np.zeros((len(times), 4))
+        )
 
-    def derivatives(self, states: Floats, touching: Flags, times: Floats) -> Floats:
+    def displacement_derivatives(self, states: Floats, touching: Flags, times: Floats) -> Floats:
         """Compute displacements and their derivatives, shape (ORDER + 2, 2, n), by (6)."""
-        found = np.empty((ORDER + 2, 2, len(times)))
-        found[:2] = states.T.reshape(2, 2, -1)
-        box, forces = self.box(times), self.forces(times)
+        series = np.empty((ORDER + 2, 2, len(times)))
+        series[:2] = states.T.reshape(2, 2, -1)
+        box, forces = self.box_acceleration_derivatives(times), self.force_derivatives(times)
         for n in range(ORDER):
-            felt = self.accelerations(found[n], found[n + 1], touching, forces[n])
-            found[n + 2] = felt - box[n]
-        return found
+            accelerations = self.mass_accelerations(series[n], series[n + 1], touching, forces[n])
+            series[n + 2] = accelerations - box[n]
+        return series
 
-    def box(self, times: Floats) -> Floats:
+    def box_acceleration_derivatives(self, times: Floats) -> Floats:
         """Compute the box's acceleration and its derivatives, shape (ORDER, n)."""
-        found = padded_to_order(self.driven("box_acceleration", times))
-        found[0] += self.steady
-        return found
+        derivatives = pad_to_order(self._driving_derivatives("box_acceleration", times))
+        derivatives[0] += self.steady
+        return derivatives
 
-    def forces(self, times: Floats) -> Floats:
+    def force_derivatives(self, times: Floats) -> Floats:
         """Compute the forces on both masses and their derivatives, shape (ORDER, 2, n)."""
-        return np.stack([padded_to_order(self.driven(name, times)) for name in FORCES], axis=1)
+        return np.stack(
+            [pad_to_order(self._driving_derivatives(name, times)) for name in FORCES], axis=1
+        )
 
-    def accelerations(
+    def mass_accelerations(
         self, x: Floats, v: Floats, touching: Flags, forces: ArrayLike = 0.0
     ) -> Floats:
         """Compute the masses' accelerations by (6), or derivatives of them, shape (2, n)."""
@@ -96,10 +102,14 @@ class Motion:
         both = (loads[0] + loads[1]) / (s.m1 + s.m2)
         return np.where(touching, both, np.stack([loads[0] / s.m1, loads[1] / s.m2]))
 
-    def advance(self, states: Floats, touching: Flags, times: Floats, lengths: Floats) -> Floats:
-        """Compute the states a given time later, shape (n, 4), by Taylor series."""
-        series = self.derivatives(states, touching, times)
-        return np.concatenate([taylor(series, lengths), taylor(series[1:], lengths)]).T
+    def states_later(
+        self, states: Floats, touching: Flags, times: Floats, lengths: Floats
+    ) -> Floats:
+        """Compute the states later by given lengths of time, shape (n, 4), by Taylor series."""
+        series = self.displacement_derivatives(states, touching, times)
+        return np.concatenate(
+            [evaluate_taylor(series, lengths), evaluate_taylor(series[1:], lengths)]
+        ).T
 
     def step_count(self, length: float) -> int:
         """Return the number of equal steps in which Taylor series cover a length of time."""
@@ -108,8 +118,8 @@ class Motion:
         fastest = max(max(math.sqrt(k / m), d / m) for m, k, d in alone)
         return max(1, math.ceil(fastest * length / SHORT))
 
-    def releases(self) -> Floats:
-        """Compute when permanent contact ends, s: the first root of the contact force (18)."""
+    def release_times(self) -> Floats:
+        """Compute when permanent contacts end, s: first roots of the contact force (18)."""
         if self.structure.bonded:
             return np.empty(0)
         times = np.concatenate([self.times, self.impact_times])
@@ -118,10 +128,10 @@ class Motion:
         hit = np.arange(len(times)) >= len(self.times)
         order = np.lexsort([~hit, times])  # a sample at an impact is after it
         ends = np.flatnonzero(touch[order[:-1]] & ~before[order[1:]])
-        found = [self._release(times[order[i]], times[order[i + 1]]) for i in ends]
-        return np.array(found)
+        times_of_release = [self._release_time(times[order[i]], times[order[i + 1]]) for i in ends]
+        return np.array(times_of_release)
 
-    def _release(self, begin: float, end: float) -> float:
+    def _release_time(self, begin: float, end: float) -> float:
         """Return when the contact force first falls below 0, s; ``begin`` if it does not."""
         state = self._state_at(begin)
         touching = np.array([True])
@@ -129,12 +139,14 @@ class Motion:
         nodes = self.pieces.nodes
         mesh = np.union1d(mesh, nodes[(nodes > begin) & (nodes < end)])
         for start, stop in zip(mesh[:-1], mesh[1:], strict=True):
-            series = self.derivatives(state, touching, np.array([start]))[:, :, 0]
-            forces = self.forces(np.array([start]))[:, :, 0]
-            root = first_fall(*self._contact_force(series, forces), stop - start)
+            series = self.displacement_derivatives(state, touching, np.array([start]))[:, :, 0]
+            forces = self.force_derivatives(np.array([start]))[:, :, 0]
+            root = first_time_below_zero(
+                *self._contact_force_series_and_scale(series, forces), stop - start
+            )
             if root is not None:
                 return float(start + root)
-            state = self.advance(state, touching, np.array([start]), np.array([stop - start]))
+            state = self.states_later(state, touching, np.array([start]), np.array([stop - start]))
         return float(begin)
 
     def _state_at(self, time: float) -> Floats:
@@ -146,19 +158,26 @@ class Motion:
         for i in np.flatnonzero(inside):
             mesh = np.linspace(now, self.impact_times[i], 1 + self.step_count(float(self.times[1])))
             for start, stop in zip(mesh[:-1], mesh[1:], strict=True):
-                state = self.advance(state, touching, np.array([start]), np.array([stop - start]))
-            state, touching = self.after_impulses(state, self.impulses[[i]]), self.sticks[[i]]
+                state = self.states_later(
+                    state, touching, np.array([start]), np.array([stop - start])
+                )
+            state, touching = (
+                self.states_after_impulses(state, self.impulses[[i]]),
+                self.sticks[[i]],
+            )
             now = float(self.impact_times[i])
         return state
 
-    def after_impulses(self, states: Floats, impulses: Floats) -> Floats:
-        """Return the states after impulses (15), which push mass 1 back and mass 2 on."""
+    def states_after_impulses(self, states: Floats, impulses: Floats) -> Floats:
+        """Return copies of states after impulses (15), which push mass 1 back and mass 2 on."""
         after = states.copy()
         after[:, 2] -= impulses / self.structure.m1
         after[:, 3] += impulses / self.structure.m2
         return after
 
-    def _contact_force(self, series: Floats, forces: Floats) -> tuple[Floats, float]:
+    def _contact_force_series_and_scale(
+        self, series: Floats, forces: Floats
+    ) -> tuple[Floats, float]:
         """Compute the contact force (18) and its derivatives, and the scale of its terms."""
         s = self.structure
         own = s.k1 * series[:-2, 0] + s.d1 * series[1:-1, 0] - forces[:, 0]
@@ -167,27 +186,27 @@ class Motion:
         return force, abs(float(own[0])) + abs(float(other[0]))
 
 
-def steady_acceleration(history: xr.Dataset) -> float:
-    """Return the constant acceleration of a history's box, m/s2: gravity."""
+def steady_box_acceleration(history: xr.Dataset) -> float:
+    """Return the constant part of a history's box acceleration, m/s2: gravity."""
     return float(history.attrs.get("box_acceleration", 0.0))
 
 
-def padded_to_order(taylor: Floats) -> Floats:
-    """Return a cubic's derivatives at n times as the first rows of ORDER."""
-    found = np.zeros((ORDER, len(taylor)))
-    found[:4] = taylor.T
-    return found
+def pad_to_order(derivatives: Floats) -> Floats:
+    """Return a cubic's derivatives at n times as the first of ORDER rows, with zeros below."""
+    padded = np.zeros((ORDER, len(derivatives)))
+    padded[:4] = derivatives.T
+    return padded
 
 
-def taylor(series: Floats, lengths: Floats) -> Floats:
+def evaluate_taylor(series: Floats, lengths: Floats) -> Floats:
     """Evaluate Taylor series of two motions at n times after expansion; return shape (2, n)."""
-    found = np.zeros(series.shape[1:])
+    values = np.zeros(series.shape[1:])
     for n in range(len(series) - 1, -1, -1):
-        found = series[n] + found * lengths / (n + 1)
-    return found
+        values = series[n] + values * lengths / (n + 1)
+    return values
 
 
-def first_fall(derivatives: Floats, scale: float, length: float) -> float | None:
+def first_time_below_zero(derivatives: Floats, scale: float, length: float) -> float | None:
     """Return the first time in [0, length] at which a Taylor series falls below 0, or None."""
     from scipy.optimize import brentq
 
@@ -204,45 +223,50 @@ def first_fall(derivatives: Floats, scale: float, length: float) -> float | None
 
 
 @dataclass(frozen=True)
-class SmoothParts:
+class SmoothAccelerations:
     """Hold the accelerations of box and masses without gravity and the impulses of impacts."""
 
     times: Floats  # of the record, s
-    drive: Cells  # what moves the box, m/s2, or a half, N
-    mass1: Cells
-    mass2: Cells
+    drive: PolynomialSignal  # what moves the box, m/s2, or a half, N
+    mass1: PolynomialSignal
+    mass2: PolynomialSignal
     error: float  # largest distance of a mass's acceleration from the history's next sample, m/s2
 
 
-def smooth_parts(motion: Motion, sample_rate: float) -> SmoothParts:
+def solve_smooth_accelerations(motion: Motion, sample_rate: float) -> SmoothAccelerations:
     """Solve the equations of motion between the samples; return the smooth accelerations."""
     steps = math.floor(float(motion.times[-1]) * sample_rate * (1.0 + 1e-14))
     parts = motion.step_count(1.0 / sample_rate)
     grid = np.arange(steps * parts + 1) / (sample_rate * parts)
     grid = grid[grid <= motion.times[-1]]
     times = grid[::parts]
-    releases = motion.releases()
-    given = [motion.times, motion.impact_times, releases, motion.pieces.nodes]
-    nodes = np.unique(np.concatenate([*given, grid]))
+    releases = motion.release_times()
+    event_times = [motion.times, motion.impact_times, releases, motion.pieces.nodes]
+    nodes = np.unique(np.concatenate([*event_times, grid]))
     nodes = nodes[(nodes >= 0.0) & (nodes <= times[-1])]
     starts = nodes[:-1]
-    states, touching, error = propagate(motion, nodes, releases)
-    drive = Cells(starts, nodes[1:], motion.pieces.taylor(starts))
-    series, forces = motion.derivatives(states, touching, starts), motion.forces(starts)
+    states, touching, error = integrate_between_samples(motion, nodes, releases)
+    drive = PolynomialSignal(starts, nodes[1:], motion.pieces.derivatives_at(starts))
+    series, forces = (
+        motion.displacement_derivatives(states, touching, starts),
+        motion.force_derivatives(starts),
+    )
     felt = np.stack(
         [
-            motion.accelerations(
+            motion.mass_accelerations(
                 series[n], series[n + 1], touching, forces[n] if n < ORDER else 0.0
             )
             for n in range(ORDER + 1)
         ]
     )
     felt[0] -= motion.steady
-    one, two = (Cells(starts, nodes[1:], felt[:, i].T) for i in (0, 1))
-    return SmoothParts(times, drive, one, two, error)
+    one, two = (PolynomialSignal(starts, nodes[1:], felt[:, i].T) for i in (0, 1))
+    return SmoothAccelerations(times, drive, one, two, error)
 
 
-def propagate(motion: Motion, nodes: Floats, releases: Floats) -> tuple[Floats, Flags, float]:
+def integrate_between_samples(
+    motion: Motion, nodes: Floats, releases: Floats
+) -> tuple[Floats, Flags, float]:
     """Integrate from sample to sample; return states, contact, and the distance to the samples."""
     count = len(nodes) - 1
     interval = np.searchsorted(motion.times, nodes[:-1], side="right") - 1
@@ -262,23 +286,25 @@ def propagate(motion: Motion, nodes: Floats, releases: Floats) -> tuple[Floats, 
     for low, high in zip(bounds[:-1], bounds[1:], strict=True):
         now = order[low:high]
         last = now - 1
-        moved = motion.advance(states[last], touching[last], nodes[last], lengths[last])
-        states[now] = motion.after_impulses(moved, impulses[now])
+        moved = motion.states_later(states[last], touching[last], nodes[last], lengths[last])
+        states[now] = motion.states_after_impulses(moved, impulses[now])
         touching[now] = (touching[last] | begins[now]) & ~ends[now]
     last = np.append(np.flatnonzero(rank == 0)[1:] - 1, count - 1)
-    moved = motion.advance(states[last], touching[last], nodes[last], lengths[last])
-    moved = motion.after_impulses(moved, impulses[last + 1])
+    moved = motion.states_later(states[last], touching[last], nodes[last], lengths[last])
+    moved = motion.states_after_impulses(moved, impulses[last + 1])
     target = np.searchsorted(motion.times, nodes[last + 1])
     exact = (target < len(motion.times)) & (
         motion.times[np.minimum(target, len(motion.times) - 1)] == nodes[last + 1]
     )
-    return states, touching, mismatch(motion, moved[exact], target[exact])
+    return states, touching, largest_acceleration_difference(motion, moved[exact], target[exact])
 
 
-def mismatch(motion: Motion, states: Floats, samples: NDArray[np.int_]) -> float:
+def largest_acceleration_difference(
+    motion: Motion, states: Floats, samples: NDArray[np.int_]
+) -> float:
     """Return the largest difference between accelerations by states and stored ones, m/s2."""
     difference = (states - motion.states[samples]).T.reshape(2, 2, -1)
     touching = motion.touching[samples]
     return float(
-        np.abs(motion.accelerations(difference[0], difference[1], touching)).max(initial=0.0)
+        np.abs(motion.mass_accelerations(difference[0], difference[1], touching)).max(initial=0.0)
     )

@@ -15,11 +15,11 @@ from ..errors import NOT_NUMBERS, InputError
 from ..lazy import xr
 from ..model.arguments import checked_unmasked
 from ..response.labels import variable
-from .conversion import MOTIONS, differentiated
+from .conversion import MOTIONS, differentiate_and_advance
 from .pieces import Floats
 from .record_checks import doubtful_channels
 from .signals import HERTZ, checked_quantity
-from .time_base import checked_times, interpolated
+from .time_base import interpolate_at, make_times_equal
 
 ACCELERATIONS = {  # long names
     "box_acceleration": "acceleration of the box",
@@ -91,31 +91,33 @@ def record(
     """
     columns = box_acceleration, acceleration1, acceleration2, force1, force2
     channels = dict(zip(CHANNELS, columns, strict=True))
-    given = {name: one for name, one in channels.items() if one is not None}
+    measured = {name: one for name, one in channels.items() if one is not None}
     words = sensors
     if isinstance(sensors, Mapping):
         words = "; ".join(f"{name}: {text}" for name, text in sensors.items())
     attributes = {"title": title, "source": source, "sensors": words}
-    return checked_recorded_names(time, given, sample_rate, attributes)
+    return make_record(time, measured, sample_rate, attributes)
 
 
-def checked_recorded_names(
+def make_record(
     time: ArrayLike | None,
     channels: Mapping[str, ArrayLike],
     sample_rate: float | None,
     attributes: Mapping[str, Any],
-    reading: Reading | None = None,
+    reading: ReadingOptions | None = None,
 ) -> xr.Dataset:
-    """Make a record as :func:`record` does, of channels that are read as stated."""
+    """Make a record as :func:`record` does, of channels with options of reading."""
     import xarray as xr
 
-    reading = reading or Reading()
-    raw = {name: checked_numbers(name, one, reading.first_row) for name, one in channels.items()}
+    reading = reading or ReadingOptions()
+    raw = {
+        name: checked_finite_list(name, one, reading.first_row) for name, one in channels.items()
+    }
     if not raw:
         raise InputError(f"record: no channel given; expected one of {', '.join(CHANNELS)}")
     rate = None if sample_rate is None else checked_quantity(HERTZ, "sample_rate", sample_rate)
     if time is not None:
-        times = checked_numbers("time", time, reading.first_row)
+        times = checked_finite_list("time", time, reading.first_row)
     elif rate is not None:
         times = np.arange(len(next(iter(raw.values())))) / rate
     else:
@@ -123,18 +125,18 @@ def checked_recorded_names(
     for name, one in raw.items():
         if len(one) != len(times):
             raise InputError(f"{name}: {len(one)} values; expected {len(times)}, as the times")
-    even, rate, time_base = checked_times(times, rate, reading.first_row, reading.resample)
+    even, rate, time_base = make_times_equal(times, rate, reading.first_row, reading.resample)
     if "resampled" in time_base:
-        raw = {name: interpolated(times, one, even) for name, one in raw.items()}
-    kept = reading.covered(len(even), rate)
-    values = {name: reading.acceleration(name, one, rate)[kept] for name, one in raw.items()}
+        raw = {name: interpolate_at(times, one, even) for name, one in raw.items()}
+    kept = reading.samples_in_all_channels(len(even), rate)
+    values = {name: reading.to_acceleration(name, one, rate)[kept] for name, one in raw.items()}
     raw, even = {name: one[kept] for name, one in raw.items()}, even[kept]
     if attributes.get("source") != "simulated":
         for name, what, advice in doubtful_channels(even, values, raw):
             text = f"{what}{'' if what.endswith('?') else ';'} {advice}"
             warnings.warn(f"{channel_label(name)}: {text}", UserWarning, stacklevel=4)
     words = {"sensors": "", **attributes, "sample_rate": rate}
-    words |= reading.words(time_base, len(times) - len(even))
+    words |= reading.attributes(time_base, len(times) - len(even))
     return xr.Dataset(
         {
             name: variable("time", one, unit_of_channel(name), CHANNELS[name])
@@ -146,8 +148,8 @@ def checked_recorded_names(
 
 
 @dataclass(frozen=True)
-class Reading:
-    """State how the channels of a record are read."""
+class ReadingOptions:
+    """How the values of a record's channels become accelerations at equal times."""
 
     first_row: int = 0  # from which rows in messages are counted
     resample: bool = False  # uneven times are made equal
@@ -155,12 +157,12 @@ class Reading:
     scale: Mapping[str, float] = field(default_factory=dict)  # factors
     delay: Mapping[str, float] = field(default_factory=dict)  # s by which channels are late
 
-    def acceleration(self, name: str, values: Floats, rate: float) -> Floats:
+    def to_acceleration(self, name: str, values: Floats, rate: float) -> Floats:
         lateness = self.delay.get(name, 0.0)
-        made = differentiated(values, rate, self.derivatives.get(name, 0), lateness)
+        made = differentiate_and_advance(values, rate, self.derivatives.get(name, 0), lateness)
         return made if name not in self.scale else self.scale[name] * made
 
-    def covered(self, count: int, rate: float) -> slice:
+    def samples_in_all_channels(self, count: int, rate: float) -> slice:
         """Return the samples of which all channels, earlier by their delays, have data."""
         samples = {name: delay * rate for name, delay in self.delay.items()}
         first = math.ceil(max((-one for one in samples.values()), default=0.0) - 1e-6)
@@ -171,8 +173,8 @@ class Reading:
             raise InputError(f"delay: {delays}; {text}")
         return slice(first, last)
 
-    def words(self, time_base: str, cut: int = 0) -> dict[str, str]:
-        """Return what was done as attributes of the record, without what was not."""
+    def attributes(self, time_base: str, cut: int = 0) -> dict[str, str]:
+        """Return what was done to the channels, as attributes of the record."""
         converted = [
             f"{SHORT_NAMES[name]}: {MOTIONS[count]}, differentiated by its spectrum"
             for name, count in self.derivatives.items()
@@ -183,18 +185,18 @@ class Reading:
         return {name: text for name, text in words.items() if text}
 
 
-def plain_numbers(name: str, given: Any, kind: type = float) -> NDArray[Any]:
-    """Return an argument as an array; raise unless it has only numbers."""
-    checked_unmasked(name, given)
+def array_of_numbers(name: str, values: Any, dtype: type = float) -> NDArray[Any]:
+    """Return a copy of an argument as an array; raise unless it has only numbers, NaN too."""
+    checked_unmasked(name, values)
     try:
-        return np.array(given, dtype=kind)
+        return np.array(values, dtype=dtype)
     except NOT_NUMBERS:
         raise InputError(f"{name}: expected a list of numbers") from None
 
 
-def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
+def checked_finite_list(name: str, argument: Any, first_row: int = 0) -> Floats:
     """Return a list as an array of floats; raise with the row where one is not finite."""
-    values = plain_numbers(name, given)
+    values = array_of_numbers(name, argument)
     if values.ndim != 1 or len(values) < FEWEST:
         shape = "x".join(map(str, values.shape)) or "one"
         raise InputError(f"{name}: {shape} values; expected a list of {FEWEST} numbers or more")
@@ -211,5 +213,5 @@ def unit_of_channel(name: str) -> str:
 
 
 def channel_label(name: str) -> str:
-    """Return a channel's name as people say it and as it is in Python: base (box_acceleration)."""
+    """Return a channel's short name and its name in Python: base (box_acceleration)."""
     return f"{SHORT_NAMES[name]} ({name})"

@@ -24,9 +24,9 @@ def doubtful_channels(
         other = next((one for key, one in channels.items() if key != name), values)
         force = name.startswith("force")  # of a hammer it is 0 most of the time
         # a half next to the one that is struck may hardly move
-        wrong_unit = "" if knocked else implausible_unit(accelerations[name])
+        wrong_unit = "" if knocked else doubt_about_unit(accelerations[name])
         share = clipped_share(values)
-        constant = None if force else constant_part(values, other)
+        constant = None if force else stuck_part(values, other)
         if wrong_unit:
             doubts.append((name, wrong_unit, "expected m/s2"))
         if share > CLIPPED:
@@ -44,7 +44,7 @@ def doubtful_channels(
     return doubts
 
 
-def implausible_unit(values: Floats) -> str:
+def doubt_about_unit(values: Floats) -> str:
     """Return a question on the unit of numbers that are hardly in m/s2; empty if they may be."""
     peak, low, high = float(np.abs(values).max()), *PLAUSIBLE
     mean, spread = abs(float(values.mean())), float(values.std())
@@ -57,7 +57,7 @@ def implausible_unit(values: Floats) -> str:
     return ""
 
 
-def implausible_times(times: Floats) -> str:
+def doubt_about_time_unit(times: Floats) -> str:
     """Return a question on the unit of times that no unit is stated of; empty if they may be s."""
     steps, duration = np.diff(times), float(np.ptp(times)) if len(times) else 0.0
     step = float(np.median(steps)) if len(steps) else 0.0
@@ -67,7 +67,7 @@ def implausible_times(times: Floats) -> str:
     return f'{text}; if they are not in s, give their unit, such as unit="time=ms" or "time=us"'
 
 
-def constant_part(values: Floats, other: Floats) -> slice | None:
+def stuck_part(values: Floats, other: Floats) -> slice | None:
     """Return the longest part with one value in which another channel moves; None without one."""
     changes = np.flatnonzero(np.diff(values)) + 1
     ends = np.concatenate([[0], changes, [len(values)]])
@@ -79,7 +79,7 @@ def constant_part(values: Floats, other: Floats) -> slice | None:
 
 
 def is_ascending(values: Floats) -> bool:
-    """Return whether values ascend from first to last, as times and counters do."""
+    """Return whether values never fall, and rise somewhere, as times and counters do."""
     steps = np.diff(values)
     return bool((steps >= 0.0).all() and (steps > 0.0).any())
 

@@ -40,13 +40,13 @@ class Dialect:
     first: int  # line of the first numbers, counted from 0
     texts: frozenset[int] = frozenset()  # columns of texts
 
-    def fields(self, line: str) -> list[str]:
+    def split(self, line: str) -> list[str]:
         """Split a line into its fields; a separator at its end is dropped."""
         line = line.strip() if self.separator == " " else line.strip("\r\n")
         if self.separator == " ":
             return line.split()
-        found = next(csv.reader([line], delimiter=self.separator), [])
-        return found[:-1] if len(found) > 1 and not found[-1].strip() else found
+        fields = next(csv.reader([line], delimiter=self.separator), [])
+        return fields[:-1] if len(fields) > 1 and not fields[-1].strip() else fields
 
 
 def read_csv(path: Path, gaps: bool = False) -> Columns:
@@ -56,15 +56,15 @@ def read_csv(path: Path, gaps: bool = False) -> Columns:
     lines = text.split("\n", MOST_HEADING + 1)[: MOST_HEADING + 1]
     if not text.strip():
         raise InputError(f"{path}: empty; expected columns of numbers")
-    dialect = dialect_of(path, lines)
-    text, left_out = without_footing(text, dialect)
-    columns = len(dialect.fields(lines[dialect.first]))
+    dialect = detect_dialect(path, lines)
+    text, left_out = cut_footing(text, dialect)
+    columns = len(dialect.split(lines[dialect.first]))
     if gaps:
-        columns = max(columns, *(len(dialect.fields(line)) for line in lines[: dialect.first]), 1)
+        columns = max(columns, *(len(dialect.split(line)) for line in lines[: dialect.first]), 1)
         text = fill_gaps(text, dialect, columns)
     names = column_headings(lines[: dialect.first], dialect, columns)
     values = parse_numbers(path, text, dialect, [name for name, _ in names])
-    first = dialect.fields(lines[dialect.first])
+    first = dialect.split(lines[dialect.first])
     sensors = column_sensitivities(lines[: dialect.first], dialect, columns)
     made = [
         Column(*heading, column, first[i].strip() if i in dialect.texts else "", sensors[i])
@@ -85,13 +85,13 @@ def decode_text(path: Path, data: bytes) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def dialect_of(path: Path, lines: list[str]) -> Dialect:
+def detect_dialect(path: Path, lines: list[str]) -> Dialect:
     """Detect how a file's first lines write numbers; raise naming what stands in their place."""
     for has_texts in (False, True):
         for number in range(len(lines)):
             for separator, decimal in product(SEPARATORS, NUMBERS):
                 dialect = Dialect(separator, decimal, number)
-                texts = dialect_texts(dialect, lines[number:], has_texts)
+                texts = text_columns_of_row(dialect, lines[number:], has_texts)
                 if texts is not None:
                     found = replace(dialect, texts=texts)
                     return settle_decimal_sign(found, lines[number : number + 50])
@@ -99,19 +99,21 @@ def dialect_of(path: Path, lines: list[str]) -> Dialect:
         f"row {number}: {describe_text(field.strip())}"
         for number, line in enumerate(lines, 1)
         for separator in SEPARATORS
-        for field in Dialect(separator, ".", 0).fields(line)
+        for field in Dialect(separator, ".", 0).split(line)
         if any(re.fullmatch(pattern, field.strip()) for pattern in TEXTS.values())
     )
     text = next(named, f"no line of numbers in the first {min(len(lines), MOST_HEADING)}")
     raise InputError(f"{path}: {text}; expected columns of numbers")
 
 
-def dialect_texts(dialect: Dialect, lines: list[str], has_texts: bool) -> frozenset[int] | None:
-    """Return which columns of the row in a table are texts; None if the first line is no row."""
+def text_columns_of_row(
+    dialect: Dialect, lines: list[str], has_texts: bool
+) -> frozenset[int] | None:
+    """Return which columns of the first line are texts; None if it is no row of a table."""
     if dialect.separator == dialect.decimal and '"' not in lines[0]:
         return None
     more = [line for line in lines[1:] if line.strip()][: 10 if has_texts else 0]
-    rows = [[one.strip() for one in dialect.fields(line)] for line in (lines[0], *more)]
+    rows = [[one.strip() for one in dialect.split(line)] for line in (lines[0], *more)]
     number, row = NUMBERS[dialect.decimal], rows[0]
     texts = [{i for i, one in enumerate(r) if one and not number.fullmatch(one)} for r in rows]
     full, others = sum(map(bool, row)) - len(texts[0]), len(row) - len(texts[0])
@@ -134,7 +136,7 @@ def settle_decimal_sign(dialect: Dialect, lines: list[str]) -> Dialect:
 
 def column_headings(lines: list[str], dialect: Dialect, count: int) -> list[tuple[str, str]]:
     """Return names and units of columns from the lines above the numbers."""
-    rows = [dialect.fields(line.lstrip("#%").strip(" ")) for line in lines]
+    rows = [dialect.split(line.lstrip("#%").strip(" ")) for line in lines]
     fitting = [[field.strip() for field in row] for row in rows if len(row) == count]
     fitting = [row for row in fitting if not any(map(SENSITIVITY.fullmatch, row))]
     if not fitting:
@@ -149,18 +151,18 @@ def column_headings(lines: list[str], dialect: Dialect, count: int) -> list[tupl
 
 def column_sensitivities(lines: list[str], dialect: Dialect, count: int) -> list[str]:
     """Return the sensitivities of columns from a line above the numbers, empty without one."""
-    rows = [[field.strip() for field in dialect.fields(line)] for line in lines]
+    rows = [[field.strip() for field in dialect.split(line)] for line in lines]
     fitting = [row for row in rows if len(row) <= count and any(map(SENSITIVITY.fullmatch, row))]
     row = [*(fitting or [[]])[0], *[""] * count][:count]
     return [field if SENSITIVITY.fullmatch(field) else "" for field in row]
 
 
-def without_footing(text: str, dialect: Dialect) -> tuple[str, str]:
-    """Cut last lines that begin with a word in place of a number; return what is left out."""
+def cut_footing(text: str, dialect: Dialect) -> tuple[str, str]:
+    """Cut last lines that begin with a word in place of a number; return text and a note on it."""
     body, number, footing = text.rstrip(), NUMBERS[dialect.decimal], ""
     for _ in range(0 if 0 in dialect.texts else MOST_HEADING):
         above, _, line = body.rpartition("\n")
-        field = (dialect.fields(line) or [""])[0].strip()
+        field = (dialect.split(line) or [""])[0].strip()
         if number.fullmatch(field) or not TEXT.fullmatch(field):
             break
         body, footing, row = above.rstrip(), line.strip(), above.count("\n") + 2
@@ -175,7 +177,7 @@ def fill_gaps(text: str, dialect: Dialect, columns: int) -> str:
         return text
     lines = text.split("\n")
     for number, line in enumerate(lines[dialect.first :], dialect.first):
-        fields = dialect.fields(line)
+        fields = dialect.split(line)
         if any(field.strip() for field in fields):
             full = [field.strip() or "nan" for field in fields]
             full = [f'"{field}"' if dialect.separator in field else field for field in full]
@@ -195,7 +197,7 @@ def parse_numbers(path: Path, text: str, dialect: Dialect, names: list[str]) -> 
     if separator is not None and body.partition("\n")[0].rstrip(" ").endswith(separator):
         numbers = re.sub(f"{re.escape(separator)} *$", "", numbers, flags=re.MULTILINE)
     try:
-        found = np.loadtxt(
+        rows = np.loadtxt(
             StringIO(numbers),
             delimiter=separator,
             comments=None,
@@ -204,19 +206,19 @@ def parse_numbers(path: Path, text: str, dialect: Dialect, names: list[str]) -> 
             usecols=columns if dialect.texts else None,
         )
     except ValueError:
-        found = np.empty((0, 0))
-    if found.shape[1] != len(columns):
-        refuse_first_bad_field(path, body, dialect, names)
-    values = np.full((len(found), len(names)), np.nan)
-    values[:, columns] = found
+        rows = np.empty((0, 0))
+    if rows.shape[1] != len(columns):
+        raise_first_bad_field(path, body, dialect, names)
+    values = np.full((len(rows), len(names)), np.nan)
+    values[:, columns] = rows
     return values
 
 
-def refuse_first_bad_field(path: Path, body: str, dialect: Dialect, names: list[str]) -> None:
+def raise_first_bad_field(path: Path, body: str, dialect: Dialect, names: list[str]) -> None:
     """Raise an error that names the first field that is not a number."""
     pattern = NUMBERS[dialect.decimal]
     for number, line in enumerate(body.split("\n"), dialect.first + 1):
-        fields = [field.strip() for field in dialect.fields(line)]
+        fields = [field.strip() for field in dialect.split(line)]
         if fields and len(fields) != len(names):
             text = f"{len(fields)} columns; expected {len(names)}"
             raise InputError(f"{path}, row {number}: {text}")

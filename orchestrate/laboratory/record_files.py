@@ -18,9 +18,9 @@ from ..model.arguments import checked_path
 from ..reader_process import read_in_process
 from ..running.netcdf import check_unpacked_size, unpacked_size
 from .analysis.channels import NAMES_IN_RESULTS
-from .columns import Column, Columns, converted_channels
+from .columns import Column, Columns, convert_to_si
 from .conversion import SMALLEST, ByChannel, number_by_channel
-from .record import CHANNELS, FORCES, Reading, checked_recorded_names, unit_of_channel
+from .record import CHANNELS, FORCES, ReadingOptions, make_record, unit_of_channel
 from .record_csv import read_csv, write_csv
 from .record_labview import read_lvm, read_tdms
 from .record_mat import read_mat, write_mat
@@ -112,15 +112,15 @@ def read_record(
     >>> read_record(path).box_acceleration.values.round(4).tolist()
     [0.9807, 2.942, -1.9613, 0.0]
     """
-    path, setup = checked_path("path", path), ChannelSetup.of(channels)
+    path, setup = checked_path("path", path), ChannelSetup.from_argument(channels)
     rate = setup.sample_rate if sample_rate is None else sample_rate
-    table, kind = read_columns(path).at_rate(rate), file_kind(path)
-    if kind == "wav" and not setup.keyword("scale", scale):
+    table, kind = read_columns(path).with_sample_rate(rate), file_kind(path)
+    if kind == "wav" and not setup.merge_keyword("scale", scale):
         raise InputError(f"{path}: no scale=; expected for a WAV file: m/s2 at its full scale")
-    given = {"unit": unit, "sensitivity": sensitivity, "scale": scale, "delay": delay}
-    stated = {name: setup.keyword(name, value) for name, value in given.items()}
+    keywords = {"unit": unit, "sensitivity": sensitivity, "scale": scale, "delay": delay}
+    stated = {name: setup.merge_keyword(name, value) for name, value in keywords.items()}
     unit = stated["unit"]
-    time, read, read_as = converted_channels(
+    time, read, read_as = convert_to_si(
         table, setup.columns, unit, stated["sensitivity"], setup.file
     )
     if time is None and table.sample_rate is None:
@@ -128,7 +128,7 @@ def read_record(
     words = {"title": f"Record {path.name}", "source": path.name, **table.attributes}
     if kind != "netcdf" or unit is not None:  # it says how it was read the first time
         words |= read_as
-    reading = Reading(
+    reading = ReadingOptions(
         table.first_row,
         resample or setup.resample,
         {name: one.derivatives for name, one in read.items()},
@@ -137,11 +137,11 @@ def read_record(
     )
     values = {name: one.values for name, one in read.items()}
     try:
-        made = checked_recorded_names(time, values, table.sample_rate, words, reading)
+        made = make_record(time, values, table.sample_rate, words, reading)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     for name in read:
-        made[name].attrs |= setup.attributes(name)
+        made[name].attrs |= setup.sensor_attributes(name)
     return made
 
 
@@ -187,12 +187,12 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
     if kind in ("wav", "lvm", "tdms"):
         raise InputError(f"{path}: {kind.upper()} is only read; expected .csv, .uff, .mat or .nc")
     if kind == "csv":
-        return write_atomically(path, lambda place: write_csv(place, columns))
+        return write_whole(path, lambda temporary: write_csv(temporary, columns))
     if kind == "uff":
-        return write_atomically(path, lambda place: write_uff(place, columns, rate, binary))
+        return write_whole(path, lambda temporary: write_uff(temporary, columns, rate, binary))
     if kind == "mat":
-        return write_atomically(path, lambda place: write_mat(place, columns, rate))
-    return write_atomically(path, lambda place: data.to_netcdf(place, engine="netcdf4"))
+        return write_whole(path, lambda temporary: write_mat(temporary, columns, rate))
+    return write_whole(path, lambda temporary: data.to_netcdf(temporary, engine="netcdf4"))
 
 
 def file_kind(path: Path) -> str:
@@ -203,8 +203,8 @@ def file_kind(path: Path) -> str:
     return ENDINGS[path.suffix.lower()]
 
 
-def check_file(path: Path) -> None:
-    """Check that a file exists, is not empty, and is not too large to read."""
+def check_readable_size(path: Path) -> None:
+    """Raise unless a path is an ordinary file, not empty and not too large to read."""
     try:
         status = path.stat()
     except OSError as error:
@@ -289,15 +289,16 @@ COMPILED = (
 def read_columns(path: Path, *arguments: object) -> Columns:
     """Read the columns of a file in a process of its own; make names and texts printable."""
     kind = file_kind(path)
-    check_file(path)
+    check_readable_size(path)
     reader, keep = READERS[kind], kind not in COMPILED
     content = read_in_process(reader, path, *arguments, expected=EXPECTED[kind], keep_process=keep)
     columns = [
-        Column(**{n: in_one_line(one) for n, one in each.items()}) for each in content["columns"]
+        Column(**{n: printable_if_text(one) for n, one in each.items()})
+        for each in content["columns"]
     ]
     return Columns(**content | {"path": str(path), "columns": columns})
 
 
-def in_one_line(value: Any) -> Any:
+def printable_if_text(value: Any) -> Any:
     """Return a text as a short line without control characters, anything else as it is."""
     return printable_line(value, MOST_LETTERS) if isinstance(value, str) else value

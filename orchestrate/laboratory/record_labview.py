@@ -13,7 +13,7 @@ from .columns import Column, Columns
 from .record_csv import decode_text
 
 
-def missing_reader(package: str, kind: str) -> InputError:
+def missing_package_error(package: str, kind: str) -> InputError:
     """Return the error of a package that is not installed, with the remedy."""
     text = f"expected the package {package}: pip install {package}"
     return InputError(f"{kind} need a package that is not here; {text}")
@@ -24,7 +24,7 @@ def read_lvm(path: Path) -> Columns:
     try:
         import lvm_read
     except ImportError:
-        raise missing_reader("lvm_read", "LabVIEW's .lvm files") from None
+        raise missing_package_error("lvm_read", "LabVIEW's .lvm files") from None
     text = decode_text(path, path.read_bytes())
     data = lvm_read.read_str(text)  # its read() takes a pickle that lies next to the file
     segment = data[0]
@@ -58,7 +58,7 @@ def read_tdms(path: Path) -> Columns:
     try:
         import nptdms
     except ImportError:
-        raise missing_reader("npTDMS", "LabVIEW's .tdms files") from None
+        raise missing_package_error("npTDMS", "LabVIEW's .tdms files") from None
     file = nptdms.TdmsFile.read(path)
     channels = [(one, dict(one.properties)) for group in file.groups() for one in group.channels()]
     columns = list(tdms_columns(channels))

@@ -37,11 +37,11 @@ def load_arrays(path: Path) -> dict[str, NDArray[Any]]:
         name: array
         for top, value in content.items()
         if not top.startswith("__")
-        for name, array in arrays_inside(top, value)
+        for name, array in iterate_arrays(top, value)
     }
 
 
-def arrays_inside(name: str, value: Any, depth: int = 0) -> Iterator[tuple[str, NDArray[Any]]]:
+def iterate_arrays(name: str, value: Any, depth: int = 0) -> Iterator[tuple[str, NDArray[Any]]]:
     """Yield names and arrays of numbers and texts of a variable, a structure or a cell."""
     array = np.asarray(value)
     if array.dtype.kind in "iufcU":
@@ -51,9 +51,9 @@ def arrays_inside(name: str, value: Any, depth: int = 0) -> Iterator[tuple[str, 
     for i, part in enumerate(array.ravel() if array.dtype.names or array.dtype == "O" else ()):
         own = f"{name}[{i}]" if array.size > 1 else name
         for field in array.dtype.names or ():
-            yield from arrays_inside(f"{own}.{field}", part[field], depth + 1)
+            yield from iterate_arrays(f"{own}.{field}", part[field], depth + 1)
         if array.dtype == "O":
-            yield from arrays_inside(own, part, depth + 1)
+            yield from iterate_arrays(own, part, depth + 1)
 
 
 def read_mat(path: Path) -> Columns:
@@ -65,7 +65,7 @@ def read_mat(path: Path) -> Columns:
         if one.dtype.kind == "U" and one.size
     }
     numbers = {name: one for name, one in arrays.items() if one.dtype.kind in "iuf"}
-    spectra = spectra_text(arrays, texts)
+    spectra = describe_spectra(arrays, texts)
     rate, columns = None, []
     for name, one in numbers.items():
         last = name.lower().rpartition(".")[2]
@@ -76,7 +76,7 @@ def read_mat(path: Path) -> Columns:
             columns.append((name, one.ravel()))
         elif one.ndim == 2 and one.shape[0] > one.shape[1]:
             columns += [(f"{name}[{i}]", column) for i, column in enumerate(one.T)]
-    times = [len(values) for name, values in columns if is_time(name)]
+    times = [len(values) for name, values in columns if is_time_name(name)]
     longest = max(times or [len(values) for _, values in columns], default=0)
     made = [
         mat_column(name, np.asarray(values, float), texts)
@@ -88,33 +88,33 @@ def read_mat(path: Path) -> Columns:
     return Columns(str(path), made, rate, attributes={"spectra": spectra} if spectra else {})
 
 
-def is_time(name: str) -> bool:
-    """Return whether an array of a MAT file, or its last field, is called as times are."""
+def is_time_name(name: str) -> bool:
+    """Return whether an array of a MAT file, or its last field, is called time or t."""
     return name.lower().rpartition(".")[2] in ("time", "t")
 
 
 def mat_column(name: str, values: Floats, texts: dict[str, str]) -> Column:
     """Return a vector as a column, with the name, unit and sensitivity that stand nearest to it."""
 
-    def nearest(*words: str) -> str:
+    def nearest_text(*field_names: str) -> str:
         parents = name.lower().split(".")
         for depth in range(len(parents) - 1, -1, -1):
             above = ".".join([*parents[:depth], ""]) if depth else ""
             for key, text in texts.items():
                 inside = key.removeprefix(above).split(".")
-                is_own = key.startswith(above) and inside[-1] in words and len(inside) <= 3
+                is_own = key.startswith(above) and inside[-1] in field_names and len(inside) <= 3
                 if text and is_own and (depth or len(inside) == 1):
                     return text
         return ""
 
     short = name.rpartition(".")[2]
-    label = "" if is_time(name) or "." not in name else nearest("name", "channelname")
-    unit = "" if is_time(name) else nearest("units", "unit", "unitlabel", "label")
-    return Column(label or short, unit, values, sensitivity=nearest("sensitivity"))
+    label = "" if is_time_name(name) or "." not in name else nearest_text("name", "channelname")
+    unit = "" if is_time_name(name) else nearest_text("units", "unit", "unitlabel", "label")
+    return Column(label or short, unit, values, sensitivity=nearest_text("sensitivity"))
 
 
-def spectra_text(arrays: dict[str, NDArray[Any]], texts: dict[str, str]) -> str:
-    """Return which arrays are spectra: complex numbers, or a function over the frequency."""
+def describe_spectra(arrays: dict[str, NDArray[Any]], texts: dict[str, str]) -> str:
+    """Say which arrays look like spectra, as complex numbers do; empty if none does."""
     complexes = [name for name, one in arrays.items() if one.dtype.kind == "c" and one.size > 1]
     over = [name for name in arrays if name.lower().rpartition(".")[2] in FREQUENCIES]
     psd = [text for text in texts.values() if re.search(r"/\s*hz", text, re.I)]

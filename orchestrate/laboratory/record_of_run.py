@@ -8,7 +8,7 @@ from ..errors import InputError
 from ..lazy import xr
 from ..response.equations import absolute_accelerations
 from .record import record
-from .sensors import structure_of
+from .sensors import structure_of_history
 
 STATE = ("x1", "x2", "v1", "v2")
 NEEDED = ("time", *STATE, "box_acceleration", "angle")
@@ -52,7 +52,7 @@ def record_of_run(run: xr.Dataset) -> xr.Dataset:
     if not all(name in getattr(run, "variables", {}) for name in NEEDED):
         expected = "expected an answer of passage, which keeps every step; couple keeps revolutions"
         raise InputError(f"run: no {' and '.join(NEEDED[-2:])} over the time; {expected}")
-    structure = structure_of(run, NEEDED)
+    structure = structure_of_history(run, NEEDED)
     states = np.stack([run[name].values for name in STATE], axis=-1)
     first, second = absolute_accelerations(states, structure).T
     return record(

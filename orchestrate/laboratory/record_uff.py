@@ -13,7 +13,7 @@ import numpy as np
 
 from ..errors import InputError
 from .columns import Column, Columns, Floats
-from .record_labview import missing_reader
+from .record_labview import missing_package_error
 
 Dataset = dict[str, Any]  # as pyuff gives it
 log = logging.getLogger(__name__)
@@ -33,7 +33,7 @@ def import_pyuff() -> ModuleType:
     try:
         import pyuff
     except ImportError:
-        raise missing_reader("pyuff", "universal files") from None
+        raise missing_package_error("pyuff", "universal files") from None
     return pyuff
 
 
@@ -51,10 +51,10 @@ def read_uff(path: Path) -> Columns:
 def columns_over_time(
     path: Path, kinds: list[int], functions: list[tuple[int, Dataset]]
 ) -> Columns:
-    for i, kind in enumerate(kinds):
-        if kind != 58:
-            log.info("%s: dataset %d, number %d of the file, is skipped", path, kind, i)
-    used = [(i, one) for i, one in functions if is_over_time(path, i, one)]
+    """Return the datasets over time as columns; log those that are skipped."""
+    used = [(i, one) for i, one in functions if is_real_and_over_time(one)]
+    for i in sorted({*range(len(kinds))} - {i for i, _ in used}):
+        log.info("%s: dataset %d, number %d, is no function of time; skipped", path, kinds[i], i)
     if not used:
         types = {i: int(one.get("func_type", 0)) for i, one in functions}
         named = [
@@ -67,7 +67,7 @@ def columns_over_time(
         raise InputError(f"{path}: datasets {there}; expected a dataset 58 of time response")
     number, first = used[0]
     for i, one in used:
-        check_whole(path, i, one)
+        check_point_count(path, i, one)
         if not np.array_equal(one["x"], first["x"]):
             text = f"other times than number {number}; expected the same"
             raise InputError(f"{path}: dataset 58, number {i}: {text}")
@@ -76,28 +76,26 @@ def columns_over_time(
     return Columns(str(path), [time, *(column_from_dataset(i, one) for i, one in used)])
 
 
-def is_over_time(path: Path, number: int, one: Dataset) -> bool:
-    kind = int(one.get("abscissa_spec_data_type", TIME))
-    over_time = kind == TIME or (kind == 0 and int(one.get("func_type", 0)) == TIME_RESPONSE)
-    if over_time and not np.iscomplexobj(one["data"]):
-        return True
-    log.info("%s: dataset 58, number %d of the file, is no function of time; skipped", path, number)
-    return False
+def is_real_and_over_time(dataset: Dataset) -> bool:
+    kind = int(dataset.get("abscissa_spec_data_type", TIME))
+    time_response = int(dataset.get("func_type", 0)) == TIME_RESPONSE
+    over_time = kind == TIME or (kind == 0 and time_response)
+    return over_time and not np.iscomplexobj(dataset["data"])
 
 
-def time_values(one: Dataset) -> Floats:
+def time_values(dataset: Dataset) -> Floats:
     """Return the times of a dataset, by the roundest sampling rate that its step allows."""
-    if int(one["abscissa_spacing"]) != 1:
-        return np.asarray(one["x"], float)
-    noted = NOTED.search(str(one.get("id5", "")))
-    start, step = float(one["abscissa_min"]), float(one["abscissa_inc"])
-    rate = rounded_rate(step)
+    if int(dataset["abscissa_spacing"]) != 1:
+        return np.asarray(dataset["x"], float)
+    noted = NOTED.search(str(dataset.get("id5", "")))
+    start, step = float(dataset["abscissa_min"]), float(dataset["abscissa_inc"])
+    rate = roundest_rate_for_step(step)
     if noted is not None and math.isclose(float(noted[1]), rate, rel_tol=1e-4):
         rate, start = float(noted[1]), float(noted[2])
-    return start + np.arange(len(one["data"])) / rate
+    return start + np.arange(len(dataset["data"])) / rate
 
 
-def rounded_rate(step: float) -> float:
+def roundest_rate_for_step(step: float) -> float:
     """Return the roundest sampling rate whose step is equal to this one to six digits."""
     if not 0.0 < step < math.inf:
         raise InputError(f"abscissa increment {step!r}; expected a number > 0")
@@ -110,21 +108,23 @@ def rounded_rate(step: float) -> float:
     return 1.0 / step
 
 
-def check_whole(path: Path, number: int, one: Dataset) -> None:
+def check_point_count(path: Path, number: int, dataset: Dataset) -> None:
     """Check that a dataset has as many values as its heading announces."""
-    announced = int(one["num_pts"])
-    if len(one["data"]) != announced:
-        text = f"{len(one['data'])} values; expected {announced}, as its heading says"
+    announced = int(dataset["num_pts"])
+    if len(dataset["data"]) != announced:
+        text = f"{len(dataset['data'])} values; expected {announced}, as its heading says"
         raise InputError(f"{path}: dataset 58, number {number}: {text}")
 
 
-def column_from_dataset(number: int, one: Dataset) -> Column:
+def column_from_dataset(number: int, dataset: Dataset) -> Column:
     """Convert a dataset to a column, named by its first line or by its node and direction."""
-    name = str(one.get("id1", "")).strip()
+    name = str(dataset.get("id1", "")).strip()
     if name.lower() in NO_LABELS:
-        name = f"{one.get('rsp_node', number)}:{one.get('rsp_dir', 0)}"
-    unit = str(one.get("ordinate_axis_units_lab", "")).strip()
-    return Column(name, "" if unit.lower() in NO_LABELS else unit, np.asarray(one["data"], float))
+        name = f"{dataset.get('rsp_node', number)}:{dataset.get('rsp_dir', 0)}"
+    unit = str(dataset.get("ordinate_axis_units_lab", "")).strip()
+    return Column(
+        name, "" if unit.lower() in NO_LABELS else unit, np.asarray(dataset["data"], float)
+    )
 
 
 def write_uff(path: Path, columns: list[Column], sample_rate: float, binary: bool) -> None:

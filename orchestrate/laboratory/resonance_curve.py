@@ -15,9 +15,9 @@ from ..errors import InputError
 from ..lazy import xr
 from ..response.labels import variable
 from .columns import RATIO_UNITS
-from .conversion import ACCELERATIONS, LENGTHS, SPEEDS, plain_unit
+from .conversion import ACCELERATIONS, LENGTHS, SPEEDS, normalize_unit
 from .pieces import Floats
-from .record import plain_numbers
+from .record import array_of_numbers
 
 FACES = ("acceleration1", "acceleration2")
 CURVE_ORDERS = (1.0, 2.0, 3.0)
@@ -99,21 +99,21 @@ def resonance_curve(
     [200.0]
     """
     faces = {"amplitude1": amplitude1, "amplitude2": amplitude2}
-    given = {
-        name: plain_numbers(name, one, complex if np.iscomplexobj(one) else float)
+    amplitudes = {
+        name: array_of_numbers(name, one, complex if np.iscomplexobj(one) else float)
         for name, one in faces.items()
         if one is not None
     }
-    complexes = {name: one for name, one in given.items() if np.iscomplexobj(one)}
+    complexes = {name: one for name, one in amplitudes.items() if np.iscomplexobj(one)}
     columns = CurveColumns(
-        frequency=plain_numbers("frequency", frequency),
+        frequency=array_of_numbers("frequency", frequency),
         level=level,
-        amplitudes={**given, **{name: np.abs(one) for name, one in complexes.items()}},
+        amplitudes={**amplitudes, **{name: np.abs(one) for name, one in complexes.items()}},
         phases={name: np.angle(np.atleast_2d(one)[0]) for name, one in complexes.items()},
-        floors=dict.fromkeys(given, floor) if floor is not None else {},
-        units=dict.fromkeys(given, unit),
+        floors=dict.fromkeys(amplitudes, floor) if floor is not None else {},
+        units=dict.fromkeys(amplitudes, unit),
     )
-    return made_curve(columns, relative, direction, {"title": title, "source": "measured"})
+    return make_curve(columns, relative, direction, {"title": title, "source": "measured"})
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class CurveColumns:
     units: Mapping[str, str] = field(default_factory=dict)  # of amplitudes and floors
     first_row: int = 0  # number of the first row, for messages
 
-    def orders(self, name: str) -> Floats:
+    def face_orders(self, name: str) -> Floats:
         """Return the orders of a face in its own unit, shape (3, n), NaN where there are none."""
         count = len(self.frequency)
         rows = np.atleast_2d(self.amplitudes[name])
@@ -137,13 +137,13 @@ class CurveColumns:
             text = f"expected {count}, as the frequencies, or up to 3 orders of {count}"
             raise InputError(f"{name}: {shape} values; {text}")
         for row in rows:
-            check_positive(name, row, np.arange(count) + self.first_row, least=True)
-        found = np.full((len(CURVE_ORDERS), count), np.nan)
-        found[: len(rows)] = rows
-        return found
+            check_positive(name, row, np.arange(count) + self.first_row, allow_zero=True)
+        orders = np.full((len(CURVE_ORDERS), count), np.nan)
+        orders[: len(rows)] = rows
+        return orders
 
-    def for_each_frequency(self, name: str, given: ArrayLike) -> Floats:
-        values = plain_numbers(name, given)
+    def broadcast_to_frequencies(self, name: str, value: ArrayLike) -> Floats:
+        values = array_of_numbers(name, value)
         count = len(self.frequency)
         if values.shape not in ((), (1,), (count,)):
             text = f"expected one, or {count} as the frequencies"
@@ -151,7 +151,7 @@ class CurveColumns:
         return np.array(np.broadcast_to(values, (count,)), dtype=float)
 
 
-def made_curve(
+def make_curve(
     columns: CurveColumns, relative: bool, direction: str | None, attributes: Mapping[str, Any]
 ) -> xr.Dataset:
     """Check the columns of a resonance curve and return it; see :func:`resonance_curve`."""
@@ -159,10 +159,10 @@ def made_curve(
 
     if not columns.amplitudes:
         raise InputError("resonance curve: no amplitude; expected amplitude1, amplitude2 or both")
-    known = rows_with_numbers(columns)
+    known = complete_rows(columns)
     frequency = columns.frequency[known]
     check_frequencies(frequency, np.flatnonzero(known) + columns.first_row)
-    level = columns.for_each_frequency("level", columns.level)[known]
+    level = columns.broadcast_to_frequencies("level", columns.level)[known]
     check_positive("level", level, np.flatnonzero(known) + columns.first_row)
     faces = sorted(columns.amplitudes)
     amplitude = np.empty((len(faces), len(CURVE_ORDERS), len(frequency)))
@@ -170,26 +170,28 @@ def made_curve(
     for number, name in enumerate(faces):
         unit = columns.units.get(name, "m/s2")
         factor = acceleration_factor(name, unit, frequency, level)
-        scale = factor * np.array(CURVE_ORDERS)[:, None] ** power_of(unit)
-        amplitude[number] = scale * columns.orders(name)[:, known]
+        scale = factor * np.array(CURVE_ORDERS)[:, None] ** frequency_power_of_unit(unit)
+        amplitude[number] = scale * columns.face_orders(name)[:, known]
         if name in columns.floors:
-            given = columns.for_each_frequency(f"floor of {name}", columns.floors[name])[known]
-            check_positive(f"floor of {name}", given, None, least=True)
-            floor[number] = factor * given
-        if name in columns.phases:
-            phase[number] = columns.for_each_frequency(f"phase of {name}", columns.phases[name])[
+            given = columns.broadcast_to_frequencies(f"floor of {name}", columns.floors[name])[
                 known
             ]
-    phase, sign = lagging_phases(amplitude[:, 0], phase)
+            check_positive(f"floor of {name}", given, None, allow_zero=True)
+            floor[number] = factor * given
+        if name in columns.phases:
+            phase[number] = columns.broadcast_to_frequencies(
+                f"phase of {name}", columns.phases[name]
+            )[known]
+    phase, sign = make_lags_negative(amplitude[:, 0], phase)
     text = "peak amplitude of orders, relative to the base" if relative else "peak amplitude"
     over = ("channel", "frequency")
     words = {
         **attributes,
         "unit": ", ".join(f"{name} in {columns.units.get(name, 'm/s2')}" for name in faces),
         "relative": str(bool(relative)).lower(),
-        "direction": direction_of(frequency, direction),
+        "direction": checked_direction(frequency, direction),
         "phase_sign": sign,
-        "dropped": dropped_text(known, columns.first_row),
+        "dropped": describe_dropped_rows(known, columns.first_row),
     }
     variables = {
         "amplitude": variable(("channel", "order", "frequency"), amplitude, "m/s2", text),
@@ -212,16 +214,16 @@ def curve_coordinates(faces: list[str], frequency: Floats) -> dict[str, Any]:
 # -- checks ---------------------------------------------------------------------------------------
 
 
-def rows_with_numbers(columns: CurveColumns) -> NDArray[np.bool_]:
+def complete_rows(columns: CurveColumns) -> NDArray[np.bool_]:
     """Return a mask of the rows with frequency, level and order 1 of each face; warn of others."""
     if columns.frequency.ndim != 1:
         raise InputError(f"frequency: {columns.frequency.ndim} dimensions; expected a list")
     known = np.isfinite(columns.frequency) & np.isfinite(
-        columns.for_each_frequency("level", columns.level)
+        columns.broadcast_to_frequencies("level", columns.level)
     )
     for name in columns.amplitudes:
-        known &= np.isfinite(columns.orders(name)[0])
-    if text := dropped_text(known, columns.first_row):
+        known &= np.isfinite(columns.face_orders(name)[0])
+    if text := describe_dropped_rows(known, columns.first_row):
         warnings.warn(f"resonance curve: {text}", UserWarning, stacklevel=4)
     if not FEWEST_POINTS <= known.sum() <= MOST_POINTS:
         text = f"expected {FEWEST_POINTS} to {MOST_POINTS} frequencies with a level and amplitudes"
@@ -229,7 +231,7 @@ def rows_with_numbers(columns: CurveColumns) -> NDArray[np.bool_]:
     return np.asarray(known)
 
 
-def dropped_text(known: NDArray[np.bool_], first_row: int) -> str:
+def describe_dropped_rows(known: NDArray[np.bool_], first_row: int) -> str:
     """Return a text that says which rows have no numbers; empty if all have."""
     rows = np.flatnonzero(~known) + first_row
     if not len(rows):
@@ -252,16 +254,16 @@ def check_frequencies(frequency: Floats, rows: NDArray[np.intp]) -> None:
 
 
 def check_positive(
-    name: str, values: Floats, rows: NDArray[np.intp] | None, least: bool = False
+    name: str, values: Floats, rows: NDArray[np.intp] | None, allow_zero: bool = False
 ) -> None:
-    wrong = np.flatnonzero(values < 0.0 if least else ~(values > 0.0))
+    wrong = np.flatnonzero(values < 0.0 if allow_zero else ~(values > 0.0))
     if len(wrong):
         row = wrong[0] if rows is None else rows[wrong[0]]
-        expected = "a number >= 0" if least else "a number > 0"
+        expected = "a number >= 0" if allow_zero else "a number > 0"
         raise InputError(f"{name}, row {row}: {values[wrong[0]]:.6g}; expected {expected}")
 
 
-def direction_of(frequency: Floats, direction: str | None) -> str:
+def checked_direction(frequency: Floats, direction: str | None) -> str:
     """Return the direction in which the frequencies were passed, from their order if not given."""
     if direction is None:
         return DIRECTIONS[int(frequency[-1] < frequency[0])]
@@ -273,14 +275,14 @@ def direction_of(frequency: Floats, direction: str | None) -> str:
 # -- units and phases -----------------------------------------------------------------------------
 
 
-def power_of(unit: str) -> int:
+def frequency_power_of_unit(unit: str) -> int:
     """Return the power of the frequency that makes a unit's quantity an acceleration."""
-    return next((n for n, units in enumerate(QUANTITIES) if plain_unit(unit) in units), 0)
+    return next((n for n, units in enumerate(QUANTITIES) if normalize_unit(unit) in units), 0)
 
 
 def acceleration_factor(name: str, unit: str, frequency: Floats, level: Floats) -> Floats:
     """Return the factors that convert order 1 of a unit's quantity to m/s2, shape (n,)."""
-    plain, power = plain_unit(unit), power_of(unit)
+    plain, power = normalize_unit(unit), frequency_power_of_unit(unit)
     if plain in RATIO_UNITS:
         return level.copy()
     if plain not in QUANTITIES[power]:
@@ -290,7 +292,7 @@ def acceleration_factor(name: str, unit: str, frequency: Floats, level: Floats) 
     return np.asarray(QUANTITIES[power][plain] * (TURN * frequency) ** power)
 
 
-def lagging_phases(first: Floats, phase: Floats) -> tuple[Floats, str]:
+def make_lags_negative(first: Floats, phase: Floats) -> tuple[Floats, str]:
     """Return phases that are negative where a face lags, and what was done with their sign."""
     wrapped = np.angle(np.exp(1j * phase))
     if not np.isfinite(phase).any():

@@ -15,12 +15,24 @@ from ..model import Structure
 from ..model.arguments import checked_integer, checked_word
 from ..model.ranges import ADDED, STRUCTURE, Quantity, as_scalar
 from ..running.job import refuse_unsupported, refuse_unsupported_structure
-from .analog_filter import AnalogFilter, Cells, Floats, anti_aliasing, filters_in_series, low_pass
+from .analog_filter import (
+    AnalogFilter,
+    Floats,
+    PolynomialSignal,
+    anti_aliasing_zeros_and_poles,
+    filters_in_series,
+    low_pass_zeros_and_poles,
+)
 from .pieces import Pieces
-from .reconstruction import Motion, SmoothParts, smooth_parts, steady_acceleration
+from .reconstruction import (
+    Motion,
+    SmoothAccelerations,
+    solve_smooth_accelerations,
+    steady_box_acceleration,
+)
 from .record import ACCELERATIONS, CHANNELS, FORCES, record
 from .sampled import Sampled
-from .signals import HERTZ, ExcitationSignal, check_fields
+from .signals import HERTZ, ExcitationSignal, check_and_store_fields
 
 FILTERS = ("butterworth", "bessel")
 PARTICIPATION = Quantity("participation", "1", "", -10.0, 10.0)  # of a sensor's place
@@ -81,14 +93,14 @@ class Sensor:
 
     def __post_init__(self) -> None:
         put = object.__setattr__
-        check_fields(self, bandwidth=HERTZ)
+        check_and_store_fields(self, bandwidth=HERTZ)
         rate = 2.56 * self.bandwidth if self.sample_rate is None else self.sample_rate
         put(self, "sample_rate", rate)
-        check_fields(self, sample_rate=HERTZ)
+        check_and_store_fields(self, sample_rate=HERTZ)
         checked_word("kind", self.kind, FILTERS)
         put(self, "order", checked_integer("order", self.order, 1, 10))
         put(self, "seed", checked_integer("seed", self.seed, 0, 2**63))
-        check_fields(
+        check_and_store_fields(
             self,
             noise=Quantity("noise", "(m/s2)/sqrt(Hz)", "", 0.0, 1e12),
             range=Quantity("range", "m/s2", "", 5e-324, math.inf),
@@ -120,13 +132,13 @@ class Sensor:
 
     def analog_filter(self) -> AnalogFilter:
         """Return the filters of the sensor and against aliasing, in series."""
-        parts = [low_pass(self.kind, self.order, self.bandwidth)]
+        parts = [low_pass_zeros_and_poles(self.kind, self.order, self.bandwidth)]
         if self.antialiasing:
-            parts.append(anti_aliasing(self.rate))
+            parts.append(anti_aliasing_zeros_and_poles(self.rate))
         return filters_in_series(parts)
 
-    def digitised(self, values: Floats, channel: int) -> Floats:
-        """Add a channel's own noise to filtered values, m/s2; limit and round them."""
+    def add_noise_and_digitize(self, values: Floats, channel: int) -> Floats:
+        """Add a channel's noise to filtered values, m/s2; clip them to the range, round them."""
         if self.noise:
             rms = self.noise * math.sqrt(0.5 * self.rate)
             generator = np.random.default_rng([self.seed, channel])
@@ -185,21 +197,23 @@ def measure(
     >>> felt.sizes["time"], bool(abs(felt.acceleration1).max() > 5 * abs(history.a1_abs).max())
     (5121, True)
     """
-    structure = structure_of(history)
+    structure = structure_of_history(history)
     refuse_unsupported_structure("measure", structure)
     refuse_unsupported("measure", {name: history.attrs.get(name) for name in FORCES})
-    drives = driven_channel(history)
-    sensors = sensor_by_channel(sensor, (drives, *list(ACCELERATIONS)[1:]))
+    drives = driving_channel_of_history(history)
+    sensors = sensors_by_channel(sensor, (drives, *list(ACCELERATIONS)[1:]))
     rate = next(iter(sensors.values())).rate
     length = float(history.time[-1] - history.time[0])
     if not 1.0 <= length * rate <= MOST_SAMPLES:
         low, high = 1.0 / length, MOST_SAMPLES / length
         text = f"expected {low:.3g} to {high:.3g} for that history"
         raise InputError(f"sample_rate = {rate!r} Hz: {text}")
-    motion = Motion.from_history(history, structure, pieces_for(history, excitation), drives)
-    parts = smooth_parts(motion, rate)
+    motion = Motion.from_history(history, structure, driving_pieces(history, excitation), drives)
+    parts = solve_smooth_accelerations(motion, rate)
     readings = {
-        name: sensors[name].digitised(sensor_reading(parts, motion, name, sensors[name]), number)
+        name: sensors[name].add_noise_and_digitize(
+            filtered_reading(parts, motion, name, sensors[name]), number
+        )
         for number, name in enumerate(CHANNELS)
         if name in sensors
     }
@@ -214,36 +228,44 @@ def measure(
     return made.assign_attrs(reconstruction_error=parts.error)
 
 
-def sensor_reading(parts: SmoothParts, motion: Motion, name: str, sensor: Sensor) -> Floats:
-    """Compute what a sensor's filter reads on the box or on a mass, m/s2."""
+def filtered_reading(
+    parts: SmoothAccelerations, motion: Motion, name: str, sensor: Sensor
+) -> Floats:
+    """Compute what a sensor's filter reads on the box or on a mass, m/s2, or of a force, N."""
     structure, share, box = motion.structure, sensor.participation, parts.drive
     if name == motion.drives:
-        return sensor.analog_filter().respond(box, motion.impact_times[:0], EMPTY, parts.times)
+        return sensor.analog_filter().compute_output(
+            box, motion.impact_times[:0], EMPTY, parts.times
+        )
     if motion.drives in FORCES:  # the box is at rest
         box = replace(box, derivatives=0.0 * box.derivatives)
     if name == "acceleration1":
         cells, jumps = (
-            at_sensor(parts.mass1, box, share),
+            acceleration_at_sensor(parts.mass1, box, share),
             -motion.impulses / structure.m1,
         )
     else:
         cells, jumps = (
-            at_sensor(parts.mass2, box, share),
+            acceleration_at_sensor(parts.mass2, box, share),
             motion.impulses / structure.m2,
         )
-    return sensor.analog_filter().respond(cells, motion.impact_times, share * jumps, parts.times)
+    return sensor.analog_filter().compute_output(
+        cells, motion.impact_times, share * jumps, parts.times
+    )
 
 
-def at_sensor(mass: Cells, box: Cells, participation: float) -> Cells:
-    """Return the acceleration at a sensor's place: that of the box and a part of the mass's."""
+def acceleration_at_sensor(
+    mass: PolynomialSignal, box: PolynomialSignal, participation: float
+) -> PolynomialSignal:
+    """Return ``box + participation (mass - box)``: the acceleration at a sensor's place."""
     if participation == 1.0:
         return mass
-    found = participation * mass.derivatives
-    found[:, : box.derivatives.shape[1]] += (1.0 - participation) * box.derivatives
-    return Cells(mass.starts, mass.ends, found)
+    derivatives = participation * mass.derivatives
+    derivatives[:, : box.derivatives.shape[1]] += (1.0 - participation) * box.derivatives
+    return PolynomialSignal(mass.starts, mass.ends, derivatives)
 
 
-def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Pieces:
+def driving_pieces(history: xr.Dataset, excitation: ExcitationSignal | None) -> Pieces:
     """Return what drives a history as pieces, from the history's beginning on."""
     if excitation is not None:
         label = getattr(excitation, "label", repr(excitation))
@@ -255,14 +277,14 @@ def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Piec
         return Pieces(whole.nodes - begin, whole.derivatives, whole.error)
     steps = len(history.time) - 1
     rate = steps / float(history.time[-1] - history.time[0])
-    drives = driven_channel(history)
+    drives = driving_channel_of_history(history)
     driven: Any = history[drives].values - (
-        0.0 if drives in FORCES else steady_acceleration(history)
+        0.0 if drives in FORCES else steady_box_acceleration(history)
     )
     return Sampled(acceleration=driven, sample_rate=rate).pieces()
 
 
-def driven_channel(history: xr.Dataset) -> str:
+def driving_channel_of_history(history: xr.Dataset) -> str:
     """Return which channel of a history drives it; raise if there is none."""
     for name in (*FORCES, "box_acceleration"):
         if name in history and history[name].dims == ("time",):
@@ -270,7 +292,7 @@ def driven_channel(history: xr.Dataset) -> str:
     raise InputError("history: expected an answer of shake or simulate, with what drives it")
 
 
-def sensor_by_channel(
+def sensors_by_channel(
     sensor: Sensor | Mapping[str, Sensor], known: tuple[str, ...] = tuple(ACCELERATIONS)
 ) -> dict[str, Sensor]:
     if isinstance(sensor, Sensor):
@@ -287,7 +309,7 @@ def sensor_by_channel(
     return dict(sensor)
 
 
-def structure_of(history: xr.Dataset, needed: tuple[str, ...] = NEEDED) -> Structure:
+def structure_of_history(history: xr.Dataset, needed: tuple[str, ...] = NEEDED) -> Structure:
     """Return the structure of a history; raise if one of the variables ``needed`` is missing."""
     attributes, variables = getattr(history, "attrs", {}), getattr(history, "variables", {})
     known = {*STRUCTURE} - {*ADDED} <= {*attributes} and {*needed} <= {*variables}

@@ -24,7 +24,7 @@ from ..response.signatures import as_given, question
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import FAMILY, Table, refuse_unsupported
 from ..running.options import Running
-from .level_control import LevelControl, shake_on
+from .level_control import LevelControl, shake_on_shaker
 from .pieces import Pieces
 from .record import CHANNELS, FORCES, unit_of_channel
 from .signals import ExcitationSignal
@@ -35,7 +35,7 @@ DECAYED = 1e-3  # what is left of the free vibration from the start where it cou
 
 
 @lru_cache(maxsize=4)
-def pieces_of(excitation: ExcitationSignal, accuracy: float) -> Pieces:
+def cached_pieces(excitation: ExcitationSignal, accuracy: float) -> Pieces:
     return excitation.pieces(accuracy)
 
 
@@ -58,17 +58,20 @@ class ShakeJob(Question):
 
     @property
     def pieces(self) -> Pieces:
-        return pieces_of(self.excitation, self.accuracy)
+        return cached_pieces(self.excitation, self.accuracy)
 
     def parameters(self) -> dict[str, Any]:
-        found = super().parameters()
-        found["excitation"] = {"kind": type(self.excitation).__name__, **found["excitation"]}
-        return found
+        parameters = super().parameters()
+        parameters["excitation"] = {
+            "kind": type(self.excitation).__name__,
+            **parameters["excitation"],
+        }
+        return parameters
 
     def items(self) -> Sequence[int]:
         return range(len(self.pieces.derivatives))
 
-    def times(self, first: float = 0.0, end: float = math.inf) -> NDArray[np.float64]:
+    def sample_times(self, first: float = 0.0, end: float = math.inf) -> NDArray[np.float64]:
         """Return the sampling times from ``first`` up to, not including, ``end``, s."""
         rate, duration = self.sample_rate, self.pieces.duration
         last = math.floor(duration * rate * (1.0 + 1e-14))
@@ -83,15 +86,15 @@ class ShakeJob(Question):
         if drives == BOX:
             cubics = cubics + [self.box_acceleration, 0.0, 0.0, 0.0]
         nodes = pieces.nodes[first : last + 1]
-        samples = self.times(nodes[0], math.inf if last == self.count() else nodes[-1])
+        samples = self.sample_times(nodes[0], math.inf if last == self.count() else nodes[-1])
         with Player(fmus[OSCILLATOR]) as player:
-            player.start(self.structure, self.start, self.beside)
+            player.start(self.structure, self.start, self.additional_excitation)
             if previous is not None:
                 player.restore_state(previous["fmu_state"][-1].tobytes())
             played = player.play(nodes, cubics, samples, drives=(drives,))
             kept = np.frombuffer(player.save_state(), dtype=np.uint8)[np.newaxis]
-        driven = self.driven(samples)
-        forces = np.stack([driven[name] for name in FORCES], axis=1) if self.forced else None
+        driven = self.excitation_channels(samples)
+        forces = np.stack([driven[name] for name in FORCES], axis=1) if self.has_forces else None
         motion = played.rows[:, :4], self.structure, played.touching
         one, two = accelerations_with(forces, *motion, driven[BOX]).T
         return {
@@ -103,22 +106,22 @@ class ShakeJob(Question):
         }
 
     @property
-    def beside(self) -> Excitation:
+    def additional_excitation(self) -> Excitation:
         pushes = {name: getattr(self, name) for name in PUSHES}
         frequency = self.frequency or self.structure.omega
         return Excitation(frequency=frequency, amplitude=0.0, **pushes)
 
     @property
-    def forced(self) -> bool:
+    def has_forces(self) -> bool:
         return self.excitation.drives in FORCES or any(getattr(self, name) for name in FORCES)
 
-    def driven(self, times: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    def excitation_channels(self, times: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
         """Return the box's acceleration and both forces, excitation and what acts beside it."""
-        given = {BOX: np.full(len(times), self.box_acceleration)}
+        channels = {BOX: np.full(len(times), self.box_acceleration)}
         harmonic = np.sin(self.frequency * times)
-        given |= {name: getattr(self, name) * harmonic for name in FORCES}
-        given[self.excitation.drives] = given[self.excitation.drives] + self.pieces(times)
-        return given
+        channels |= {name: getattr(self, name) * harmonic for name in FORCES}
+        channels[self.excitation.drives] = channels[self.excitation.drives] + self.pieces(times)
+        return channels
 
     def dataset(self, table: Table) -> xr.Dataset:
         drives = self.excitation.drives
@@ -140,7 +143,7 @@ class ShakeJob(Question):
                 "excitation_error": variable((), self.pieces.error, unit, error),
                 "transient_time": variable((), transient_time(self.structure), "s", transient),
             },
-            {"time": variable("time", self.times(), "s", "time from the start")},
+            {"time": variable("time", self.sample_times(), "s", "time from the start")},
             f"Shaken by {self.excitation.description}: {self.structure.label()}",
             excitation=self.excitation.label,
             excitation_description=self.excitation.description,
@@ -239,7 +242,7 @@ def shake(
     pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
     if shaker is not None:
         refuse_unsupported("a shaker", pushes)
-        return shake_on(structure, excitation, shaker, sample_rate, start, running)
+        return shake_on_shaker(structure, excitation, shaker, sample_rate, start, running)
     if not isinstance(excitation, ExcitationSignal):
         kinds = "expected a SweptSine, SteppedSine, Random, Shock, Sampled or Hammer, or a sum"
         raise InputError(f"excitation = {excitation!r}: {kinds}")

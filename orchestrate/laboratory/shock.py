@@ -10,8 +10,8 @@ import numpy as np
 from ..errors import InputError
 from ..model.arguments import checked_word
 from ..model.ranges import Quantity
-from .pieces import ERROR, Floats, Pieces, equal_nodes, phase_step
-from .signals import LEVEL, SECONDS, ExcitationSignal, check_fields, checked_quantity
+from .pieces import ERROR, Floats, Pieces, equal_nodes, max_phase_step
+from .signals import LEVEL, SECONDS, ExcitationSignal, check_and_store_fields, checked_quantity
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +45,7 @@ class Shock(ExcitationSignal):
 
     def __post_init__(self) -> None:
         delay = Quantity("delay", "s", "", 0.0, 1e7)
-        check_fields(self, peak=LEVEL, length=SECONDS, delay=delay)
+        check_and_store_fields(self, peak=LEVEL, length=SECONDS, delay=delay)
         checked_word("shape", self.shape, ("half-sine", "sawtooth", "trapezoid"))
         end = self.delay + self.length
         duration = checked_quantity(SECONDS, "duration", self.duration or end + 19.0 * self.length)
@@ -63,24 +63,24 @@ class Shock(ExcitationSignal):
         return 100.0 / self.length
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        edges, error = self._edges(accuracy)
+        edges, error = self._piece_starts_and_error(accuracy)
         begin, end = self.delay, self.delay + self.length
         nodes = np.unique([0.0, *(begin + edges), end, self.duration])
         inside = (nodes[:-1] >= begin) & (nodes[1:] <= end)
-        found = Pieces.interpolate(nodes, self._pulse, error)
-        return Pieces(nodes, np.where(inside[:, None], found.derivatives, 0.0), error)
+        pulse = Pieces.interpolate(nodes, self._pulse_acceleration, error)
+        return Pieces(nodes, np.where(inside[:, None], pulse.derivatives, 0.0), error)
 
-    def _edges(self, accuracy: float) -> tuple[Floats, float]:
+    def _piece_starts_and_error(self, accuracy: float) -> tuple[Floats, float]:
         """Return where the pulse's pieces begin, s after its beginning, and their error bound."""
         if self.shape == "trapezoid":
             return self.length * np.array([0.0, 0.1, 0.9]), 0.0
         if self.shape == "sawtooth":
             return np.zeros(1), 0.0
-        angles = equal_nodes(0.0, math.pi, phase_step(accuracy))
+        angles = equal_nodes(0.0, math.pi, max_phase_step(accuracy))
         error = self.peak * float(np.diff(angles).max()) ** 4 / ERROR
         return self.length * angles[:-1] / math.pi, error
 
-    def _pulse(self, time: Floats) -> Floats:
+    def _pulse_acceleration(self, time: Floats) -> Floats:
         part = (time - self.delay) / self.length
         if self.shape == "half-sine":
             return self.peak * np.sin(np.pi * part)

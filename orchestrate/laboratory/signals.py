@@ -34,19 +34,19 @@ def checked_quantity(quantity: Quantity, name: str, value: object) -> float:
     return own.check(value)
 
 
-def check_fields(signal: object, **quantities: Quantity) -> None:
-    """Check fields of a frozen dataclass against their quantities, and store them as numbers."""
+def check_and_store_fields(signal: object, **quantities: Quantity) -> None:
+    """Check fields of a frozen dataclass against their quantities, and store them as floats."""
     for name, quantity in quantities.items():
         object.__setattr__(signal, name, checked_quantity(quantity, name, getattr(signal, name)))
 
 
-def checked_profile(name: str, given: object, quantity: Quantity) -> Profile:
+def checked_profile(name: str, points: object, quantity: Quantity) -> Profile:
     """Return break points (Hz, value); raise unless their frequencies ascend."""
     expected = "expected pairs (Hz, value) with ascending frequencies, at least two"
     try:
-        pairs = [(float(f), float(value)) for f, value in given]  # type: ignore[attr-defined]
+        pairs = [(float(f), float(value)) for f, value in points]  # type: ignore[attr-defined]
     except NOT_NUMBERS:
-        raise InputError(f"{name} = {given!r}: {expected}") from None
+        raise InputError(f"{name} = {points!r}: {expected}") from None
     for f, value in pairs:
         checked_quantity(HERTZ, f"{name}'s frequency", f)
         checked_quantity(quantity, f"{name} at {f:g} Hz", value)
@@ -58,11 +58,11 @@ def checked_profile(name: str, given: object, quantity: Quantity) -> Profile:
     return tuple(pairs)
 
 
-def checked_level(name: str, given: object, low: float, high: float) -> float | Profile:
+def checked_level(name: str, value: object, low: float, high: float) -> float | Profile:
     """Return a peak acceleration, m/s2, or its profile, which must cover ``low`` to ``high``."""
-    if not isinstance(given, (tuple, list, np.ndarray)):
-        return checked_quantity(LEVEL, name, given)
-    profile = checked_profile(name, given, LEVEL)
+    if not isinstance(value, (tuple, list, np.ndarray)):
+        return checked_quantity(LEVEL, name, value)
+    profile = checked_profile(name, value, LEVEL)
     if not profile[0][0] <= low <= high <= profile[-1][0]:
         ends = f"{profile[0][0]:g} to {profile[-1][0]:g} Hz"
         raise InputError(f"{name}: its profile is of {ends}; expected {low:g} to {high:g}")
@@ -75,13 +75,13 @@ def format_level(level: float | Profile) -> str:
     return " to ".join(f"{end:.4g} m/s2" for end in dict.fromkeys((min(values), max(values))))
 
 
-def along_profile(profile: Profile, frequency: Floats) -> Floats:
+def interpolate_profile(profile: Profile, frequency: Floats) -> Floats:
     """Interpolate a profile between break points in log-log scales; 0 outside."""
     corners, values = np.log(np.array(profile)).T
     inside = (frequency >= profile[0][0]) & (frequency <= profile[-1][0])
     with np.errstate(divide="ignore"):
-        found = np.exp(np.interp(np.log(frequency), corners, values))
-    return np.where(inside, found, 0.0)
+        interpolated = np.exp(np.interp(np.log(frequency), corners, values))
+    return np.where(inside, interpolated, 0.0)
 
 
 class ExcitationSignal(ABC):
@@ -144,15 +144,15 @@ class Sine(ExcitationSignal):
         if isinstance(self.acceleration, float):
             return np.full(np.shape(time), self.acceleration)
         low, high = self.acceleration[0][0], self.acceleration[-1][0]
-        return along_profile(self.acceleration, np.clip(self.frequency(time), low, high))
+        return interpolate_profile(self.acceleration, np.clip(self.frequency(time), low, high))
 
     def __call__(self, time: ArrayLike) -> Floats:
         return np.asarray(self.level(time) * np.sin(self.phase(time)))
 
-    def check_length(self, phase: float, longest: float, name: str) -> None:
-        """Check that pieces of a sine up to this phase are not too many."""
-        if phase > MOST_PIECES * longest:
-            text = f"expected less than {MOST_PIECES * longest / TURN:.3g}"
+    def check_piece_count(self, phase: float, max_step: float, name: str) -> None:
+        """Raise if a sine up to this phase, rad, has more pieces of a length than are allowed."""
+        if phase > MOST_PIECES * max_step:
+            text = f"expected less than {MOST_PIECES * max_step / TURN:.3g}"
             raise InputError(f"the {name} has {phase / TURN:.3g} oscillations: {text}")
 
 

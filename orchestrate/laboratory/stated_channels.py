@@ -12,7 +12,7 @@ from ..errors import InputError
 from ..model.spelling import expected_one_of
 from ..model.toml_files import read_tables
 from .columns import Named
-from .conversion import ByChannel, by_channel
+from .conversion import ByChannel, expand_by_channel
 from .record import CHANNELS
 
 ACTING = ("unit", "sensitivity", "scale", "delay")  # keywords of read_record, by channel
@@ -32,12 +32,12 @@ class ChannelSetup:
     file: str = ""  # that it was read from
 
     @classmethod
-    def of(cls, channels: Channels) -> ChannelSetup:
+    def from_argument(cls, channels: Channels) -> ChannelSetup:
         """Make one from what :func:`.read_record` takes as ``channels``."""
         if channels is None:
             return cls()
         if isinstance(channels, str) and "=" in channels:
-            return cls(by_channel("channels", channels, (), ("time", *CHANNELS)))
+            return cls(expand_by_channel("channels", channels, (), ("time", *CHANNELS)))
         if isinstance(channels, str) and "," in channels:
             return cls([text.strip() for text in channels.split(",")])
         text = "expected a TOML file, base=...,face1=..., or a list of columns"
@@ -53,13 +53,13 @@ class ChannelSetup:
         return cls(channels)
 
     @classmethod
-    def from_mapping(cls, label: str, given: Mapping[str, Any]) -> ChannelSetup:
+    def from_mapping(cls, label: str, mapping: Mapping[str, Any]) -> ChannelSetup:
         """Make one from columns or tables by channel, and values that are of all channels."""
-        of_all = {name: given[name] for name in ("sample_rate", "resample") if name in given}
-        rest = {name: one for name, one in given.items() if name not in of_all}
+        of_all = {name: mapping[name] for name in ("sample_rate", "resample") if name in mapping}
+        rest = {name: one for name, one in mapping.items() if name not in of_all}
         columns: dict[str, str | int] = {}
         words: dict[str, dict[str, Any]] = {}
-        for name, table in by_channel(label, rest, (), ("time", *CHANNELS)).items():
+        for name, table in expand_by_channel(label, rest, (), ("time", *CHANNELS)).items():
             if not isinstance(table, Mapping):
                 columns[name] = table
                 continue
@@ -72,17 +72,17 @@ class ChannelSetup:
                     words.setdefault(key, {})[name] = value
         return cls(columns or None, words, **of_all)
 
-    def keyword(self, name: str, given: ByChannel) -> ByChannel:
-        """Return a keyword of :func:`.read_record`: what is given acts before the setup."""
+    def merge_keyword(self, name: str, argument: ByChannel) -> ByChannel:
+        """Return a keyword of :func:`.read_record`: the argument, completed by the setup."""
         known = self.words.get(name, {})
-        if given is None or not known:
-            return known or None if given is None else given
-        if isinstance(given, Mapping) or (isinstance(given, str) and "=" in given):
-            return {**known, **by_channel(name, given, (), ("time", *CHANNELS))}
-        return given
+        if argument is None or not known:
+            return known or None if argument is None else argument
+        if isinstance(argument, Mapping) or (isinstance(argument, str) and "=" in argument):
+            return {**known, **expand_by_channel(name, argument, (), ("time", *CHANNELS))}
+        return argument
 
-    def attributes(self, channel: str) -> dict[str, str]:
-        """Return what is known of a channel's sensor."""
+    def sensor_attributes(self, channel: str) -> dict[str, str]:
+        """Return what is stated of a channel's sensor, as attributes of the channel."""
         return {
             key: str(self.words[key][channel])
             for key in SENSOR_WORDS

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..constants import TURN
 from ..errors import InputError
 from ..model.ranges import Quantity
-from .pieces import ERROR, Floats, Pieces, phase_step, subdivided
+from .pieces import ERROR, Floats, Pieces, max_phase_step, subdivide
 from .signals import HERTZ, Profile, Sine, checked_level, checked_quantity
 
 CYCLES = Quantity("cycles", "", "", 0.0, 1e6)
@@ -63,9 +63,9 @@ class SteppedSine(Sine):
             if cycles != int(cycles) or cycles < least:
                 raise InputError(f"{name} = {cycles!r}: expected a whole number >= {least}")
             put(self, name, int(cycles))
-        put(self, "duration", float(self._changes()[0][-1]))
+        put(self, "duration", float(self._change_times_and_phases()[0][-1]))
 
-    def _changes(self) -> tuple[Floats, Floats]:
+    def _change_times_and_phases(self) -> tuple[Floats, Floats]:
         """Return times, s, and phases, rad, of the changes of frequency, with beginning and end."""
         cycles = np.full(len(self.frequencies), self.settle_cycles + self.measured_cycles, float)
         cycles[0] += 0.25
@@ -84,40 +84,40 @@ class SteppedSine(Sine):
 
     def measured_times(self) -> Floats:
         """Return beginning and end of the measured part at each frequency, s; shape (n, 2)."""
-        ends = self._changes()[0][1:]
+        ends = self._change_times_and_phases()[0][1:]
         return np.stack([ends - self.measured_cycles / np.array(self.frequencies), ends], axis=1)
 
-    def _step_at(self, time: ArrayLike) -> NDArray[np.int_]:
+    def _step_index_at(self, time: ArrayLike) -> NDArray[np.int_]:
         """Return the index of the frequency that is played at a time."""
-        changes = self._changes()[0][1:-1]
+        changes = self._change_times_and_phases()[0][1:-1]
         return np.searchsorted(changes, np.asarray(time, dtype=float), side="right")
 
     def frequency(self, time: ArrayLike) -> Floats:
-        return np.array(self.frequencies)[self._step_at(time)]
+        return np.array(self.frequencies)[self._step_index_at(time)]
 
     def phase(self, time: ArrayLike) -> Floats:
         t = np.asarray(time, dtype=float)
-        times, phases = self._changes()
-        step = self._step_at(t)
+        times, phases = self._change_times_and_phases()
+        step = self._step_index_at(t)
         return np.asarray(phases[step] + TURN * self.frequency(t) * (t - times[step]))
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
         """Return pieces of equal phase at each frequency."""
-        times, phases = self._changes()
-        longest = phase_step(accuracy)
-        self.check_length(phases[-1], longest, "stepped sine")
-        nodes = subdivided(times, np.ceil(np.diff(phases) / longest).astype(int))
+        times, phases = self._change_times_and_phases()
+        longest = max_phase_step(accuracy)
+        self.check_piece_count(phases[-1], longest, "stepped sine")
+        nodes = subdivide(times, np.ceil(np.diff(phases) / longest).astype(int))
         angles = TURN * self.frequency(nodes[:-1]) * np.diff(nodes)
         error = float((self.level(nodes[:-1]) * angles**4).max() / ERROR)
         return Pieces.interpolate(nodes, self, error)
 
 
-def checked_frequencies(given: Any) -> tuple[float, ...]:
+def checked_frequencies(argument: Any) -> tuple[float, ...]:
     """Return frequencies in Hz as floats; raise unless there is one at least."""
-    several = isinstance(given, (Sequence, np.ndarray)) and not isinstance(given, str)
-    values = tuple(given) if several else ()
+    several = isinstance(argument, (Sequence, np.ndarray)) and not isinstance(argument, str)
+    values = tuple(argument) if several else ()
     if not 1 <= len(values) <= MOST_FREQUENCIES:
-        text = f"{len(values)} of them" if several else repr(given)
+        text = f"{len(values)} of them" if several else repr(argument)
         raise InputError(f"frequencies: {text}; expected 1 to {MOST_FREQUENCIES} numbers in Hz")
     return tuple(
         checked_quantity(HERTZ, f"frequencies[{i}]", value) for i, value in enumerate(values)

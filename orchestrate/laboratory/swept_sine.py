@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..model.arguments import checked_word
 from ..model.ranges import Quantity
 from . import signals
-from .pieces import ERROR, Floats, Pieces, equal_nodes, phase_step, subdivided
+from .pieces import ERROR, Floats, Pieces, equal_nodes, max_phase_step, subdivide
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +53,7 @@ class SweptSine(signals.Sine):
 
     def __post_init__(self) -> None:
         put = object.__setattr__
-        signals.check_fields(self, first=signals.HERTZ, last=signals.HERTZ)
+        signals.check_and_store_fields(self, first=signals.HERTZ, last=signals.HERTZ)
         checked_word("spacing", self.spacing, ("linear", "log"))
         if self.first == self.last:
             raise InputError(f"last = {self.last!r} Hz: expected another frequency than first")
@@ -69,11 +69,11 @@ class SweptSine(signals.Sine):
             raise InputError(f"{said or 'nothing'} given: expected one of duration= and rate=")
         if self.rate:
             rate = signals.checked_quantity(Quantity("rate", "", "", 1e-9, 1e9), "rate", self.rate)
-            put(self, "duration", self._span() / rate)
+            put(self, "duration", self._swept_range() / rate)
             put(self, "rate", None)
-        signals.check_fields(self, duration=signals.SECONDS)
+        signals.check_and_store_fields(self, duration=signals.SECONDS)
 
-    def _span(self) -> float:
+    def _swept_range(self) -> float:
         """Return the range swept: Hz if linear, 60 times the octaves if logarithmic."""
         if self.spacing == "linear":
             return abs(self.last - self.first)
@@ -88,7 +88,7 @@ class SweptSine(signals.Sine):
         return 20.0 * max(self.first, self.last)
 
     @property
-    def _growth(self) -> float:
+    def _growth_rate(self) -> float:
         """Rate of the frequency: Hz/s if linear, ln(f1/f0)/T in 1/s if logarithmic."""
         if self.spacing == "linear":
             return (self.last - self.first) / self.duration
@@ -97,22 +97,22 @@ class SweptSine(signals.Sine):
     def frequency(self, time: ArrayLike) -> Floats:
         t = np.asarray(time, dtype=float)
         if self.spacing == "linear":
-            return np.asarray(self.first + self._growth * t)
-        return np.asarray(self.first * np.exp(self._growth * t))
+            return np.asarray(self.first + self._growth_rate * t)
+        return np.asarray(self.first * np.exp(self._growth_rate * t))
 
     def phase(self, time: ArrayLike) -> Floats:
         t = np.asarray(time, dtype=float)
         if self.spacing == "linear":
-            return np.asarray(TURN * t * (self.first + 0.5 * self._growth * t))
-        return np.asarray(TURN * self.first / self._growth * np.expm1(self._growth * t))
+            return np.asarray(TURN * t * (self.first + 0.5 * self._growth_rate * t))
+        return np.asarray(TURN * self.first / self._growth_rate * np.expm1(self._growth_rate * t))
 
     def time_of(self, frequency: float) -> float:
         if self.spacing == "linear":
-            return (frequency - self.first) / self._growth
-        return math.log(frequency / self.first) / self._growth
+            return (frequency - self.first) / self._growth_rate
+        return math.log(frequency / self.first) / self._growth_rate
 
-    def _times_of(self, phase: Floats) -> Floats:
-        growth, turns = self._growth, phase / TURN
+    def _times_of_phases(self, phase: Floats) -> Floats:
+        growth, turns = self._growth_rate, phase / TURN
         if self.spacing == "linear":
             root = np.sqrt(np.maximum(self.first**2 + 2.0 * growth * turns, 0.0))
             return np.asarray(2.0 * turns / (self.first + root))
@@ -120,42 +120,42 @@ class SweptSine(signals.Sine):
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
         end = float(self.phase(self.duration))
-        self.check_length(end, phase_step(accuracy), "sweep")
-        phases = equal_nodes(0.0, end, phase_step(accuracy))
-        nodes = self._times_of(phases)
+        self.check_piece_count(end, max_phase_step(accuracy), "sweep")
+        phases = equal_nodes(0.0, end, max_phase_step(accuracy))
+        nodes = self._times_of_phases(phases)
         nodes[0], nodes[-1] = 0.0, self.duration
-        nodes = np.union1d(nodes, self._corners())
-        wanted = accuracy * self._peak()
-        while (parts := np.ceil((self._bounds(nodes) / wanted) ** 0.25 - 1e-3)).max() > 1.0:
-            nodes = subdivided(nodes, np.maximum(parts, 1.0).astype(int))
-        return Pieces.interpolate(nodes, self, float(self._bounds(nodes).max()))
+        nodes = np.union1d(nodes, self._corner_times())
+        wanted = accuracy * self._peak_level()
+        while (parts := np.ceil((self._error_bounds(nodes) / wanted) ** 0.25 - 1e-3)).max() > 1.0:
+            nodes = subdivide(nodes, np.maximum(parts, 1.0).astype(int))
+        return Pieces.interpolate(nodes, self, float(self._error_bounds(nodes).max()))
 
-    def _peak(self) -> float:
-        ends = np.array([0.0, *self._corners(), self.duration])
+    def _peak_level(self) -> float:
+        ends = np.array([0.0, *self._corner_times(), self.duration])
         return float(self.level(ends).max()) or 1.0
 
-    def _corners(self) -> list[float]:
+    def _corner_times(self) -> list[float]:
         if isinstance(self.acceleration, float):
             return []
         times = [self.time_of(f) for f, _ in self.acceleration]
         return [time for time in times if 0.0 < time < self.duration]
 
-    def _bounds(self, nodes: Floats) -> Floats:
+    def _error_bounds(self, nodes: Floats) -> Floats:
         """Return each piece's error bound (:mod:`.pieces`) from the largest fourth derivative."""
         # of A sin(phase) by Leibniz's and Faa di Bruno's rules, each term at its largest
         ends = np.stack([nodes[:-1], nodes[1:]])
         f = self.frequency(ends)
         w = TURN * f.max(axis=0)
-        linear, growth = self.spacing == "linear", abs(self._growth)
+        linear, growth = self.spacing == "linear", abs(self._growth_rate)
         w2 = TURN * growth if linear else w * growth  # the phase's second derivative
         w3, w4 = (0.0, 0.0) if linear else (w * growth**2, w * growth**3)
         sine = [1.0, w, w**2 + w2, w**3 + 3.0 * w * w2 + w3]
         sine.append(w**4 + 6.0 * w**2 * w2 + 3.0 * w2**2 + 4.0 * w * w3 + w4)
-        level = self._level_bounds(ends, f.min(axis=0))
+        level = self._level_derivative_bounds(ends, f.min(axis=0))
         terms = [math.comb(4, k) * level[k] * np.asarray(sine[4 - k]) for k in range(5)]
         return np.asarray(np.diff(nodes) ** 4 * np.sum(terms, axis=0) / ERROR)
 
-    def _level_bounds(self, ends: Floats, lowest: Floats) -> list[Floats]:
+    def _level_derivative_bounds(self, ends: Floats, lowest: Floats) -> list[Floats]:
         """Return the largest derivatives (orders 0 to 4) of the level A ~ f^p on each piece."""
         top = self.level(ends).max(axis=0)
         if isinstance(self.acceleration, float):
@@ -168,8 +168,8 @@ class SweptSine(signals.Sine):
         bounds, factor = [top], np.ones_like(top)
         for order in range(1, 5):
             if self.spacing == "linear":
-                factor = factor * np.abs(p - order + 1) * abs(self._growth) / lowest
+                factor = factor * np.abs(p - order + 1) * abs(self._growth_rate) / lowest
             else:
-                factor = factor * np.abs(p) * abs(self._growth)
+                factor = factor * np.abs(p) * abs(self._growth_rate)
             bounds.append(top * factor)
         return bounds

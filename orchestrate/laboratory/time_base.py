@@ -10,7 +10,7 @@ from .pieces import Floats
 UNEVEN = 0.05  # largest distance of a time from equal steps, parts of a step
 
 
-def checked_times(
+def make_times_equal(
     times: Floats, rate: float | None, first_row: int = 0, resample: bool = False
 ) -> tuple[Floats, float, str]:
     """Return equally spaced times, their rate in Hz, and what was done to make them equal.
@@ -26,11 +26,11 @@ def checked_times(
         spread = float(np.ptp(times - count / rate))
         if spread <= UNEVEN / rate:
             return times, rate, ""
-        if spread <= rounding_error(resolution, 1.0 / rate):
+        if spread <= rounding_range(resolution, 1.0 / rate):
             return times[0] + count / rate, rate, f"rounded to {resolution:g} s"
     step = float(times[-1] - times[0]) / (len(times) - 1)
     if step <= 0.0:  # some are not ascending
-        return resampled_times(times, first_row, resample)
+        return resample_or_raise(times, first_row, resample)
     off = float(np.abs(times - times[0] - step * count).max())
     rounded = roundest_rate(times, resolution)
     if rate is not None and (rounded is not None or off <= UNEVEN * step):
@@ -40,11 +40,11 @@ def checked_times(
     if rounded is not None:
         words = f"rounded to {resolution:g} s, taken as {rounded:.10g} Hz"
         return times[0] + count / rounded, rounded, words
-    return resampled_times(times, first_row, resample)
+    return resample_or_raise(times, first_row, resample)
 
 
-def resampled_times(times: Floats, first_row: int, resample: bool) -> tuple[Floats, float, str]:
-    """Return equal times in place of uneven ones and their jitter; raise unless that is wanted."""
+def resample_or_raise(times: Floats, first_row: int, resample: bool) -> tuple[Floats, float, str]:
+    """Return equal times in place of uneven ones and a note; raise unless that is wanted."""
     steps = np.diff(times)
     usual = float(np.median(steps))
     # beyond three steps samples are lost, which no spline knows
@@ -85,7 +85,7 @@ def roundest_rate(times: Floats, resolution: float) -> float | None:
     return None
 
 
-def rounding_error(resolution: float, step: float) -> float:
+def rounding_range(resolution: float, step: float) -> float:
     """Return the range of the errors of rounded times, s: 0 where the step needs no rounding."""
     whole = resolution and abs(step / resolution - round(step / resolution)) < 1e-6
     return 0.0 if whole else resolution * (1.0 + 1e-6)
@@ -101,8 +101,8 @@ def time_resolution(times: Floats) -> float:
     return 0.0
 
 
-def interpolated(times: Floats, values: Floats, even: Floats) -> Floats:
+def interpolate_at(times: Floats, values: Floats, new_times: Floats) -> Floats:
     """Return a channel at other times, by the cubic spline through its samples."""
     from scipy.interpolate import CubicSpline
 
-    return np.asarray(CubicSpline(times, values)(even))
+    return np.asarray(CubicSpline(times, values)(new_times))

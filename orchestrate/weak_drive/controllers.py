@@ -56,7 +56,7 @@ class InputControl(ABC):
         """Return the input over a step as a cubic, from the box's acceleration at its beginning."""
 
     @abstractmethod
-    def aborted(self, state: ControllerState) -> float:
+    def abort_time(self, state: ControllerState) -> float:
         """Return the time at which the controller gave up, s; NaN if it did not."""
 
 

@@ -294,7 +294,7 @@ class CosimulateJob(CoupledJob, Question):
         columns["box_work"] = work[nodes.searchsorted(columns["step_time"])]
         for _, control in self.inputs:
             if isinstance(control, InputControl):
-                end = control.aborted(tuple(run["control_memory"][-1].tolist()))
+                end = control.abort_time(tuple(run["control_memory"][-1].tolist()))
                 columns["control_aborted"] = np.array([end])
         columns["response"], columns["ended"] = table["response"][:1], np.array([ended])
         return {**columns, **impact_columns(impacts, self.structure)}

@@ -14,7 +14,7 @@ from ...model.arguments import checked_word
 from ...model.ranges import checked_range
 from ...response.labels import Variable, variable
 from ...running.provenance import describe_dataset
-from ..columns import column_taken
+from ..columns import source_column_label
 from ..pieces import Floats
 
 BOX = "box_acceleration"
@@ -45,7 +45,7 @@ class Channels:
             dataset = isinstance(record, xr.Dataset)
             what = describe_dataset(record) if dataset else type(record).__name__
             raise InputError(f"record: {what}, without time; {expected}")
-        variables = {name: channel_variable(record, name) for name in NAMES_IN_RESULTS}
+        variables = {name: find_channel(record, name) for name in NAMES_IN_RESULTS}
         present = {name: array for name, array in variables.items() if array is not None}
         missing = [name for name in needed if name not in present]
         if missing or not present:
@@ -55,9 +55,12 @@ class Channels:
         time = np.asarray(record.time.values, dtype=float)
         if time.ndim != 1 or len(time) < 16:
             raise InputError(f"record: {time.size} samples; expected at least 16")
-        rate = sample_rate(time, record.attrs.get("sample_rate"))
+        rate = checked_sample_rate(time, record.attrs.get("sample_rate"))
         values = np.stack([checked_finite(name, array, time) for name, array in present.items()])
-        title, box_label = str(record.attrs.get("title", "record")), column_taken(record.attrs, BOX)
+        title, box_label = (
+            str(record.attrs.get("title", "record")),
+            source_column_label(record.attrs, BOX),
+        )
         return cls(time, rate, tuple(present), values, title, box_label)
 
     @property
@@ -75,7 +78,7 @@ class Channels:
         return tuple(self.names[i] for i in chosen), self.values[chosen]
 
 
-def channel_variable(record: xr.Dataset, name: str) -> xr.DataArray | None:
+def find_channel(record: xr.Dataset, name: str) -> xr.DataArray | None:
     """Return a channel by its name or :func:`orchestrate.shake`'s name of it; None without."""
     for candidate in (name, NAMES_IN_RESULTS[name]):
         if candidate in record and record[candidate].dims == ("time",):
@@ -83,8 +86,8 @@ def channel_variable(record: xr.Dataset, name: str) -> xr.DataArray | None:
     return None
 
 
-def sample_rate(time: Floats, stated: Any) -> float:
-    """Return the sampling rate of equally spaced times, Hz; the stated one if it agrees."""
+def checked_sample_rate(time: Floats, stated: Any) -> float:
+    """Return the sampling rate of times, Hz, as stated if it agrees; raise if they are uneven."""
     steps = np.diff(time)
     if not np.isfinite(time).all() or not (steps > 0.0).all():
         wrong = int(np.argmin(np.nan_to_num(steps, nan=-np.inf)))
@@ -128,7 +131,7 @@ def frequency_coordinate(frequency: Floats) -> dict[str, Variable]:
     return {"frequency": variable("frequency", frequency, "Hz", "frequency")}
 
 
-def attributes(analysis: str, heading: str, title: str, **settings: Any) -> dict[str, Any]:
+def analysis_attributes(analysis: str, heading: str, title: str, **settings: Any) -> dict[str, Any]:
     return {"analysis": analysis, "title": f"{heading}: {title}", **settings}
 
 
@@ -137,8 +140,8 @@ FEWEST_LINES = 8  # samples in a segment
 
 
 @dataclass(frozen=True)
-class Averaging:
-    """How a record is divided into segments for Welch's method."""
+class WelchSegments:
+    """Overlapping segments of a record for Welch's method."""
 
     # samples of a segment, and those it shares with the next
     length: int
@@ -148,7 +151,7 @@ class Averaging:
     resolution: float  # distance of the lines, Hz
 
     @property
-    def options(self) -> dict[str, Any]:
+    def scipy_options(self) -> dict[str, Any]:
         """Keywords of :func:`scipy.signal.csd` and :func:`scipy.signal.welch`."""
         return {
             "window": self.window,
@@ -157,18 +160,18 @@ class Averaging:
             "detrend": "constant",
         }
 
-    def spectra(
+    def compute_spectra(
         self, drive: Floats, responses: Floats, rate: float
     ) -> tuple[Floats, Floats, Floats, Floats]:
         """Return lines, Hz, and spectra of what drives, of the responses and between them."""
         from scipy.signal import csd, welch
 
-        frequency, power = welch(drive, rate, **self.options)
-        response = welch(responses, rate, **self.options)[1]
-        return frequency, power, response, csd(drive, responses, rate, **self.options)[1]
+        frequency, power = welch(drive, rate, **self.scipy_options)
+        response = welch(responses, rate, **self.scipy_options)[1]
+        return frequency, power, response, csd(drive, responses, rate, **self.scipy_options)[1]
 
     @property
-    def independent(self) -> float:
+    def independent_count(self) -> float:
         """Number of independent segments that would have the same random error."""
         # overlapping segments are correlated by the squared correlation of the window with itself
         # (Welch, IEEE Trans. Audio Electroacoust. 15, 1967, 70-73)
@@ -182,27 +185,27 @@ class Averaging:
         return count / (1.0 + 2.0 * total)
 
 
-def segment_length(channels: Channels, resolution: float | None, longest: int = 0) -> int:
-    """Return the samples of a segment by the distance of its lines, Hz; the longest without one."""
+def samples_per_segment(channels: Channels, resolution: float | None, default: int = 0) -> int:
+    """Return the samples of a segment by the distance of its lines, Hz; else the default."""
     if resolution is None:
-        return longest
-    ends = longest or len(channels.time), FEWEST_LINES
+        return default
+    ends = default or len(channels.time), FEWEST_LINES
     finest, coarsest = (channels.sample_rate / n for n in ends)
     checked = checked_range("resolution", resolution, "Hz", low=finest, high=coarsest)
     return round(channels.sample_rate / checked)
 
 
-def averaging(
+def divide_into_segments(
     channels: Channels, resolution: float | None, window: str, overlap: float, fewest: int = 1
-) -> Averaging:
-    """Divide a record into overlapping windowed segments."""
+) -> WelchSegments:
+    """Divide a record into overlapping windowed segments; raise if they are too few."""
     checked_word("window", window, WINDOWS)
     part = checked_range("overlap", overlap, low=0.0, high=0.95)
     count, rate = len(channels.time), channels.sample_rate
-    length = segment_length(channels, resolution) or max(count // 16, FEWEST_LINES)
+    length = samples_per_segment(channels, resolution) or max(count // 16, FEWEST_LINES)
     shared = min(int(part * length), length - 1)
     segments = (count - shared) // (length - shared)
     if segments < fewest:
         text = f"{segments} segments in {channels.duration:.4g} s; expected at least {fewest}"
         raise InputError(f"resolution = {rate / length:.4g} Hz: {text}")
-    return Averaging(length, shared, window, segments, rate / length)
+    return WelchSegments(length, shared, window, segments, rate / length)

@@ -9,7 +9,7 @@ import numpy as np
 from ...lazy import xr
 from ...model.ranges import checked_range
 from ...response.labels import variable
-from .channels import Channels, Floats, attributes, channel_coordinate
+from .channels import Channels, Floats, analysis_attributes, channel_coordinate
 
 PARTS = 16  # of the record, for standard errors
 
@@ -52,7 +52,8 @@ def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
     counted = [np.histogram(channel, number, density=True) for channel in channels.values]
     middles = np.stack([0.5 * (edges[:-1] + edges[1:]) for _, edges in counted])
     density = np.stack([heights for heights, _ in counted])
-    moments = {name: variable("channel", *row) for name, row in statistics(channels.values).items()}
+    rows = moments_with_errors(channels.values)
+    moments = {name: variable("channel", *row) for name, row in rows.items()}
     over = ("channel", "bin")
     return xr.Dataset(
         {"density": variable(over, density, "s2/m", "probability density"), **moments},
@@ -61,27 +62,30 @@ def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
             "bin": variable("bin", np.arange(number), "1", "number of the bin"),
             "acceleration": variable(over, middles, "m/s2", "acceleration in the bin's middle"),
         },
-        attributes("probability_density", "Probability density", channels.title),
+        analysis_attributes("probability_density", "Probability density", channels.title),
     )
 
 
-def statistics(values: Floats) -> dict[str, tuple[Floats, str, str]]:
+def moments_with_errors(values: Floats) -> dict[str, tuple[Floats, str, str]]:
     """Compute moments of channels, each with unit and long name; shape (channels,)."""
     third, fourth = "third moment over the deviation's third", "fourth moment over the deviation's"
     made = {
         "mean": (values.mean(axis=1), "m/s2", "mean value"),
         "standard_deviation": (values.std(axis=1), "m/s2", "standard deviation"),
-        "skewness": (shape_of(values, "skewness"), "1", f"{third} power"),
-        "kurtosis": (shape_of(values, "kurtosis"), "1", f"{fourth} fourth power"),
+        "skewness": (skewness_or_kurtosis(values, "skewness"), "1", f"{third} power"),
+        "kurtosis": (skewness_or_kurtosis(values, "kurtosis"), "1", f"{fourth} fourth power"),
     }
     parts = np.array_split(values, PARTS, axis=1)
     for name in ("skewness", "kurtosis"):
-        error = np.std([shape_of(part, name) for part in parts], axis=0, ddof=1) / PARTS**0.5
+        error = (
+            np.std([skewness_or_kurtosis(part, name) for part in parts], axis=0, ddof=1)
+            / PARTS**0.5
+        )
         made[f"{name}_error"] = (error, "1", f"standard error of the {name}")
     return made
 
 
-def shape_of(values: Floats, name: str) -> Floats:
+def skewness_or_kurtosis(values: Floats, name: str) -> Floats:
     """Compute skewness or kurtosis (3 for a Gaussian signal); NaN for a constant signal."""
     from scipy.stats import kurtosis, skew
 

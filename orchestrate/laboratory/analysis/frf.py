@@ -16,10 +16,10 @@ from .channels import (
     BOX,
     Channels,
     Floats,
-    attributes,
-    averaging,
+    analysis_attributes,
     channel_coordinate,
     checked_finite,
+    divide_into_segments,
     frequency_coordinate,
 )
 from .knocks import Knocks
@@ -94,31 +94,33 @@ def frf(
     12.5
     """
     channels = Channels.from_record(record)
-    driven, drive = driving_channel(record, channels)
+    driving, drive = driving_channel(record, channels)
     names, responses = channels.responses()
     if not names:
         raise InputError("record: no acceleration1, m/s2; frf needs it and the excitation")
-    knocks = None if driven == BOX else Knocks.from_force(drive, channels, resolution)
+    knocks = None if driving == BOX else Knocks.find_in_force(drive, channels, resolution)
     if knocks is not None:
         window, overlap = "force and exponential", 0.0
         averages, spacing = float(len(knocks.starts)), channels.sample_rate / knocks.length
-        frequency, box, response, cross = knocks.spectra(drive, responses)
+        frequency, drive_psd, response_psd, cross = knocks.compute_spectra(drive, responses)
     else:
-        segments = averaging(channels, resolution, window, overlap, fewest=2)
-        averages, spacing = segments.independent, segments.resolution
-        frequency, box, response, cross = segments.spectra(drive, responses, channels.sample_rate)
-    made = frf_variables(driven, averages, frequency, box, response, cross)
+        segments = divide_into_segments(channels, resolution, window, overlap, fewest=2)
+        averages, spacing = segments.independent_count, segments.resolution
+        frequency, drive_psd, response_psd, cross = segments.compute_spectra(
+            drive, responses, channels.sample_rate
+        )
+    made = frf_variables(driving, averages, frequency, drive_psd, response_psd, cross)
     made["resolution"] = variable((), spacing, "Hz", "distance of the lines")
     if knocks is not None:
         text = "rate at which the exponential window falls"
-        made["window_decay"] = variable((), knocks.decay, "1/s", text)
-    text = f"estimator: noise on the response, on the {KINDS[driven][0]}, on both"
+        made["window_decay"] = variable((), knocks.window_decay, "1/s", text)
+    text = f"estimator: noise on the response, on the {KINDS[driving][0]}, on both"
     coordinates: dict[str, Variable] = {
         "estimator": ("estimator", np.array(ESTIMATORS), {"long_name": text})
     }
     coordinates |= channel_coordinate(names) | frequency_coordinate(frequency)
-    settings = {"window": window, "overlap": overlap, "excitation": driven}
-    words = attributes("frf", "Frequency response", channels.title, **settings)
+    settings = {"window": window, "overlap": overlap, "excitation": driving}
+    words = analysis_attributes("frf", "Frequency response", channels.title, **settings)
     return xr.Dataset(made, coordinates, words)
 
 
@@ -126,26 +128,31 @@ def driving_channel(record: xr.Dataset, channels: Channels) -> tuple[str, Floats
     """Return name and values of the channel that excites: the box's, or a force."""
     if BOX in channels.names and np.ptp(channels.box) > 0.0:
         return BOX, channels.box
-    given = [name for name in FORCES if name in record]
-    if len(given) != 1:
+    forces = [name for name in FORCES if name in record]
+    if len(forces) != 1:
         steady = f"{BOX} does not change" if BOX in channels.names else f"no {BOX}"
-        lacking = " and ".join(given) or steady
+        lacking = " and ".join(forces) or steady
         text = f"expected {BOX} over time, in m/s2, or one of force1 and force2, in N"
         raise InputError(f"record: {lacking}; {text}")
-    return given[0], checked_finite(given[0], record[given[0]], channels.time)
+    return forces[0], checked_finite(forces[0], record[forces[0]], channels.time)
 
 
 def frf_variables(
-    driven: str, averages: float, frequency: Floats, box: Floats, response: Floats, cross: Floats
+    driving: str,
+    averages: float,
+    frequency: Floats,
+    drive_psd: Floats,
+    response_psd: Floats,
+    cross: Floats,
 ) -> dict[str, Variable]:
     """Return the estimates and their errors from spectra of what drives and of the responses."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        estimates = estimate(box, response, cross)
-        coherence = np.minimum(np.abs(cross) ** 2 / (box * response), 1.0)
+        estimates = h1_h2_and_hv(drive_psd, response_psd, cross)
+        coherence = np.minimum(np.abs(cross) ** 2 / (drive_psd * response_psd), 1.0)
         coherence = np.where(averages > 1.0, coherence, np.nan)
         error = np.sqrt((1.0 - coherence) / (2.0 * coherence * averages))
-    word, density, density_unit, quotient, unit = KINDS[driven]
-    excited = (box >= EXCITED * box.max()) & (frequency > 0.0)
+    word, density, density_unit, quotient, unit = KINDS[driving]
+    excited = (drive_psd >= EXCITED * drive_psd.max()) & (frequency > 0.0)
     over_all = ("estimator", "channel", "frequency")
     over_channels = ("channel", "frequency")
     text = "standard deviation of the magnitude over the magnitude"
@@ -156,16 +163,16 @@ def frf_variables(
         "phase": variable(over_all, np.angle(estimates), "rad", f"phase against the {word}'s"),
         "coherence": variable(over_channels, coherence, "1", f"coherence with the {word}"),
         "random_error": variable(over_channels, error, "1", text),
-        density: variable("frequency", box, density_unit, density_text),
+        density: variable("frequency", drive_psd, density_unit, density_text),
         "excited": yes_or_no("frequency", excited, excited_text),
         "averages": variable((), averages, "1", "independent averages"),
     }
 
 
-def estimate(box: Floats, response: Floats, cross: Floats) -> Floats:
-    """Estimate H1, H2 and Hv from spectra of the box, of the responses, and between them."""
+def h1_h2_and_hv(drive_psd: Floats, response_psd: Floats, cross: Floats) -> Floats:
+    """Estimate H1, H2 and Hv from spectra of what drives, of the responses, and between them."""
     power = np.abs(cross) ** 2
-    difference = response - box
+    difference = response_psd - drive_psd
     root = np.sqrt(difference**2 + 4.0 * power)
     # both forms are the same number; each is taken where its difference does not cancel
     total = np.where(
@@ -173,4 +180,4 @@ def estimate(box: Floats, response: Floats, cross: Floats) -> Floats:
         (difference + root) / (2.0 * np.conj(cross)),
         2.0 * cross / (root - difference),
     )
-    return np.stack([cross / box, response / np.conj(cross), total])
+    return np.stack([cross / drive_psd, response_psd / np.conj(cross), total])

@@ -132,15 +132,15 @@ def fit_half(record: xr.Dataset, resolution: float | None, estimator: str) -> Ha
     s = 1j * TURN * f[used] + float(response.get("window_decay", 0.0))
     curve, weight = curve[used], np.sqrt(own.force_psd.values[used])
     weight = weight / np.linalg.norm(weight * curve)
-    start = first_estimate(s, curve, weight)
+    start = mass_frequency_and_damping(s, curve, weight)
 
-    def residual(parameters: Floats) -> Floats:
+    def weighted_residual(parameters: Floats) -> Floats:
         m, f0, zeta = parameters * start
         w = TURN * f0
         away = weight * (s**2 / (m * (s**2 + 2.0 * zeta * w * s + w * w)) - curve)
         return np.concatenate([away.real, away.imag])
 
-    fit = least_squares(residual, np.ones(3), method="lm", xtol=1e-12)
+    fit = least_squares(weighted_residual, np.ones(3), method="lm", xtol=1e-12)
     misfit = float(np.sqrt(2.0 * fit.cost))
     if not misfit < MISFIT:
         text = "expected softer knocks, or a wedge: the halves must not touch each other"
@@ -150,8 +150,8 @@ def fit_half(record: xr.Dataset, resolution: float | None, estimator: str) -> Ha
     return HalfFit(int(driven[-1]), fit.x * start, errors, misfit, float(response.averages))
 
 
-def first_estimate(s: Complexes, curve: Complexes, weight: Floats) -> Floats:
-    """Return mass, frequency and damping from ``1/H = m + d/s + k/s^2``, which is linear."""
+def mass_frequency_and_damping(s: Complexes, curve: Complexes, weight: Floats) -> Floats:
+    """Estimate mass, frequency, Hz, and damping ratio by ``1/H = m + d/s + k/s^2``: linear."""
     terms = np.stack([np.ones_like(s), 1.0 / s, 1.0 / s**2], axis=1)
     size = weight * np.abs(curve) ** 2
     rows, right = size[:, None] * terms, size / curve

@@ -10,7 +10,7 @@ from ...model.ranges import checked_range
 from ...response.labels import variable
 from ..stepped_sine import SteppedSine
 from ..swept_sine import SweptSine
-from .channels import attributes
+from .channels import analysis_attributes
 from .order_tracking import MOST_ORDERS, track_orders
 
 
@@ -75,5 +75,5 @@ def harmonics(
             "sweep_rate": tracked.sweep_rate,
         },
         higher.coords,
-        attributes("harmonics", "Harmonics", title, periods=periods, overlap=overlap),
+        analysis_attributes("harmonics", "Harmonics", title, periods=periods, overlap=overlap),
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import InputError
 from ..pieces import Floats
-from .channels import Channels, segment_length
+from .channels import Channels, samples_per_segment
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Knocks:
     settings: KnockSettings = KNOCKS
 
     @classmethod
-    def from_force(
+    def find_in_force(
         cls,
         force: Floats,
         channels: Channels,
@@ -68,22 +68,24 @@ class Knocks:
         bounce = settings.bounce * gaps.max()
         first = np.diff(begins, prepend=-len(force)) > bounce
         single = first & (gaps > bounce) & (knocks > 0)
-        name_left_out(channels.time[begins[first & ~single]], first.sum())
-        length = segment_length(channels, resolution, int(gaps[single].min()))
+        warn_of_double_hits(channels.time[begins[first & ~single]], first.sum())
+        length = samples_per_segment(channels, resolution, int(gaps[single].min()))
         starts = tuple(int(begin) for begin in begins[single])
         return cls(starts, length, width, channels.sample_rate, settings)
 
     @property
-    def decay(self) -> float:
+    def window_decay(self) -> float:
         """Rate of the exponential window, 1/s, which is added to that of every vibration."""
         return -math.log(self.settings.left) * self.rate / self.length
 
-    def spectra(self, force: Floats, responses: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    def compute_spectra(
+        self, force: Floats, responses: Floats
+    ) -> tuple[Floats, Floats, Floats, Floats]:
         """Return lines, Hz, and mean spectra of the force, the responses and between them."""
         from scipy.fft import rfft, rfftfreq
 
         time = np.arange(self.length) / self.rate
-        fading, struck = np.exp(-self.decay * time), np.arange(self.length) < 3 * self.width
+        fading, struck = np.exp(-self.window_decay * time), np.arange(self.length) < 3 * self.width
         rows = np.vstack([force, responses])
         rows = rows - np.median(rows, axis=1, keepdims=True)
         segments = np.stack([rows[:, n : n + self.length] for n in self.starts])
@@ -96,8 +98,8 @@ class Knocks:
         return rfftfreq(self.length, 1.0 / self.rate), powers[0][0], powers[1], cross
 
 
-def name_left_out(times: Floats, count: int) -> None:
-    """Warn of knocks that are left out; raise if none is left."""
+def warn_of_double_hits(times: Floats, count: int) -> None:
+    """Warn of knocks that are left out, of ``count`` in all; raise if none is left."""
     if not len(times):
         return
     listed = ", ".join(f"{time:.6g}" for time in times)

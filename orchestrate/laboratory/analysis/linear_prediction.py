@@ -1,4 +1,4 @@
-"""What the samples before and after do not foresee of a signal."""
+"""Linear prediction: the part of a signal that earlier samples do not predict."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ..pieces import Floats
 
 
 def prediction_error(signal: Floats, order: int) -> Floats:
-    """Return what the samples before do not foresee, by weights that serve both directions."""
+    """Return the error of a forward linear prediction, by weights that serve both directions."""
     products = lagged_products(signal, order)
     products = products + products[::-1, ::-1]
     products[np.diag_indices(order + 1)] *= 1.0 + 1e-9  # of a signal without noise
@@ -27,8 +27,8 @@ def lagged_products(signal: Floats, order: int) -> Floats:
     first = np.correlate(signal, signal[order:], "valid")[::-1]
     begin, end = signal[order - 1 :: -1], signal[: -order - 1 : -1]
     ends = np.outer(begin, begin) - np.outer(end, end)
-    found = np.empty((order + 1, order + 1))
-    found[0], found[:, 0] = first, first
+    products = np.empty((order + 1, order + 1))
+    products[0], products[:, 0] = first, first
     for row in range(order):
-        found[row + 1, 1:] = found[row, :-1] + ends[row]
-    return found
+        products[row + 1, 1:] = products[row, :-1] + ends[row]
+    return products

@@ -16,7 +16,7 @@ from ...model.ranges import checked_range
 from ...response.labels import variable
 from ..stepped_sine import SteppedSine
 from ..swept_sine import SweptSine
-from .channels import BOX, Channels, Floats, attributes, channel_coordinate
+from .channels import BOX, Channels, Floats, analysis_attributes, channel_coordinate
 
 MOST_ORDERS = 50
 EDGE = 2.0  # periods at both ends where the Hilbert transform is not trusted
@@ -97,7 +97,9 @@ def track_orders(
     wanted = checked_orders(orders)
     length = checked_range("periods", periods, low=2.0, high=1e4)
     part = checked_range("overlap", overlap, low=0.0, high=0.95)
-    windows, complex_amplitudes, residual = fit_windows(channels, wanted, phase, length, part)
+    windows, complex_amplitudes, residual = fit_orders_in_windows(
+        channels, wanted, phase, length, part
+    )
     over = ("channel", "order", "time")
     rate = [window.rate for window in windows]
     frequency = [window.frequency for window in windows]
@@ -116,11 +118,11 @@ def track_orders(
             "time": variable("time", [w.time for w in windows], "s", "middle of the window"),
             "frequency": variable("time", frequency, "Hz", "frequency of the excitation"),
         },
-        attributes("orders", "Orders", channels.title, periods=length, overlap=part),
+        analysis_attributes("orders", "Orders", channels.title, periods=length, overlap=part),
     )
 
 
-def fit_windows(
+def fit_orders_in_windows(
     channels: Channels,
     orders: tuple[float, ...],
     phase: SweptSine | SteppedSine | ArrayLike | None,
@@ -129,7 +131,7 @@ def fit_windows(
 ) -> tuple[list[Window], Floats, Floats]:
     """Fit orders in windows of a record by least squares; return windows, amplitudes, residuals."""
     measured = phase is None
-    angle = measured_phase(channels) if measured else given_phase(channels, phase)
+    angle = phase_of_box(channels) if measured else checked_phase(channels, phase)
     if isinstance(phase, SteppedSine):
         windows = list(dwell_windows(channels, phase, angle))
     else:
@@ -139,14 +141,14 @@ def fit_windows(
         raise InputError(
             f"periods = {periods!r}: the record has {turns:.4g}; expected fewer in a window"
         )
-    fits = [fit(channels, window, orders) for window in windows]
+    fits = [fit_orders_in_window(channels, window, orders) for window in windows]
     amplitudes = np.stack([fitted[0] for fitted in fits], axis=-1)
     residual = np.stack([fitted[1] for fitted in fits], axis=-1)
     if measured:
-        sine = moves_as_sine(channels, windows, amplitudes, residual, orders)
+        sine = sinusoidal_window_mask(channels, windows, amplitudes, residual, orders)
         windows = [window for window, kept in zip(windows, sine, strict=True) if kept]
         amplitudes, residual = (
-            against_box(channels, amplitudes[..., sine], orders),
+            refer_phases_to_box(channels, amplitudes[..., sine], orders),
             residual[:, sine],
         )
     return windows, amplitudes, residual
@@ -172,8 +174,8 @@ def checked_orders(orders: int | Sequence[float]) -> tuple[float, ...]:
 # -- phase ----------------------------------------------------------------------------------------
 
 
-def given_phase(channels: Channels, phase: SweptSine | SteppedSine | ArrayLike | None) -> Floats:
-    """Return the excitation's phase at each sample as the user gives it, rad."""
+def checked_phase(channels: Channels, phase: SweptSine | SteppedSine | ArrayLike | None) -> Floats:
+    """Return the excitation's phase at each sample as the user states it, rad."""
     if isinstance(phase, (SweptSine, SteppedSine)):
         return phase.phase(channels.time)
     try:
@@ -190,7 +192,7 @@ def given_phase(channels: Channels, phase: SweptSine | SteppedSine | ArrayLike |
     return angle
 
 
-def measured_phase(channels: Channels) -> Floats:
+def phase_of_box(channels: Channels) -> Floats:
     """Return the phase of the box's acceleration as a sine, by its analytic signal; rad."""
     from scipy.signal import hilbert
 
@@ -203,35 +205,35 @@ def measured_phase(channels: Channels) -> Floats:
     return np.asarray(angle)
 
 
-def usual_frequencies(phase: Floats, channels: Channels) -> Floats:
-    """Return the mean frequency in each twentieth of a record, Hz."""
+def mean_frequencies(phase: Floats, channels: Channels) -> Floats:
+    """Return the mean frequency of the excitation in each twentieth of a record, Hz."""
     marks = np.linspace(0, len(phase) - 1, 21).astype(int)
     return np.asarray(np.diff(phase[marks]) / np.diff(marks) * channels.sample_rate / TURN)
 
 
-def median_sweep_rate(phase: Floats, channels: Channels) -> float:
-    """Estimate the median size of the frequency's derivative, Hz/s."""
-    changes = np.abs(np.diff(usual_frequencies(phase, channels)))
+def median_absolute_sweep_rate(phase: Floats, channels: Channels) -> float:
+    """Estimate the median size of the sweep rate, Hz/s, without its sign."""
+    changes = np.abs(np.diff(mean_frequencies(phase, channels)))
     return float(np.median(changes)) * 20.0 / channels.duration
 
 
-def highest_frequency(channels: Channels) -> float:
-    """Return a frequency in Hz that no sweep of the base exceeds: it may still rise at the end."""
-    return 1.1 * float(usual_frequencies(measured_phase(channels), channels).max())
+def bound_on_sweep_frequency(channels: Channels) -> float:
+    """Return a frequency, Hz, that the base's sweep does not exceed: it may rise at the end."""
+    return 1.1 * float(mean_frequencies(phase_of_box(channels), channels).max())
 
 
-def integrated(signal: Floats, rate: float, lowest: float, times: int = 1) -> Floats:
-    """Integrate a signal once or twice in time, without what is slower than ``lowest``, rad/s."""
-    spectrum, turns = np.fft.rfft(signal), TURN * np.fft.rfftfreq(len(signal), 1.0 / rate)
-    spectrum[turns < lowest] = 0.0  # drift
-    return np.fft.irfft(spectrum / (1j * np.maximum(turns, lowest)) ** times, len(signal))
+def integrate_in_time(signal: Floats, rate: float, lowest_omega: float, count: int = 1) -> Floats:
+    """Integrate a signal once or twice in time, without what is slower than a rad/s."""
+    spectrum, omega = np.fft.rfft(signal), TURN * np.fft.rfftfreq(len(signal), 1.0 / rate)
+    spectrum[omega < lowest_omega] = 0.0  # drift
+    return np.fft.irfft(spectrum / (1j * np.maximum(omega, lowest_omega)) ** count, len(signal))
 
 
-def decimated(channels: Channels, highest: float, kept: float) -> Channels:
+def decimate(channels: Channels, highest_frequency: float, samples_per_period: float) -> Channels:
     """Low-pass and decimate channels by a whole factor, if enough samples are left."""
     from scipy.signal import firwin, resample_poly
 
-    factor = int(channels.sample_rate // (kept * highest))
+    factor = int(channels.sample_rate // (samples_per_period * highest_frequency))
     if factor < 2:
         return channels
     # 90 dB from the new Nyquist frequency on, flat up to 0.86 of it: order 3 passes
@@ -241,13 +243,15 @@ def decimated(channels: Channels, highest: float, kept: float) -> Channels:
     return replace(channels, time=time, sample_rate=rate, values=values)
 
 
-def against_box(channels: Channels, amplitudes: Floats, orders: tuple[float, ...]) -> Floats:
+def refer_phases_to_box(
+    channels: Channels, amplitudes: Floats, orders: tuple[float, ...]
+) -> Floats:
     """Refer complex amplitudes to the phase of the box's own order 1."""
     shift = np.angle(amplitudes[channels.names.index(BOX), orders.index(1.0)])
     return np.asarray(amplitudes * np.exp(-1j * np.array(orders)[:, None] * shift))
 
 
-def moves_as_sine(
+def sinusoidal_window_mask(
     channels: Channels,
     windows: Sequence[Window],
     amplitudes: Floats,
@@ -285,7 +289,7 @@ def sliding_windows(
     begins = np.searchsorted(grown, starts - 1e-9)
     ends = np.searchsorted(grown, starts + length + 1e-9, side="right")
     for begin, end in zip(begins, ends, strict=True):
-        yield window(channels, phase, slice(int(begin), int(end)), smooth)
+        yield make_window(channels, phase, slice(int(begin), int(end)), smooth)
 
 
 def dwell_windows(channels: Channels, stepped: SteppedSine, phase: Floats) -> Iterator[Window]:
@@ -299,10 +303,10 @@ def dwell_windows(channels: Channels, stepped: SteppedSine, phase: Floats) -> It
     begins = np.searchsorted(channels.time, ends[inside, 0] - 1e-3 * step)
     lasts = np.searchsorted(channels.time, ends[inside, 1] + 1e-3 * step, side="right")
     for begin, last in zip(begins, lasts, strict=True):
-        yield window(channels, phase, slice(int(begin), int(last)), smooth=False)
+        yield make_window(channels, phase, slice(int(begin), int(last)), smooth=False)
 
 
-def window(channels: Channels, phase: Floats, part: slice, smooth: bool) -> Window:
+def make_window(channels: Channels, phase: Floats, part: slice, smooth: bool) -> Window:
     """Make one window of a part of a record: its weights, phase and frequency."""
     time, angle = channels.time[part], phase[part]
     middle, half = 0.5 * (time[0] + time[-1]), 0.5 * (time[-1] - time[0])
@@ -319,7 +323,9 @@ def window(channels: Channels, phase: Floats, part: slice, smooth: bool) -> Wind
     return Window(part, weights, offset, angle, float(middle), float(frequency), float(rate))
 
 
-def fit(channels: Channels, window: Window, orders: tuple[float, ...]) -> tuple[Floats, Floats]:
+def fit_orders_in_window(
+    channels: Channels, window: Window, orders: tuple[float, ...]
+) -> tuple[Floats, Floats]:
     """Fit orders in a window by least squares; return each channel's amplitudes and residual."""
     # complex A exp(i theta) of A sin(n phase + theta) in the middle, shape (channels, orders)
     limit = NYQUIST * channels.sample_rate

@@ -6,7 +6,13 @@ import numpy as np
 
 from ...lazy import xr
 from ...response.labels import variable
-from .channels import Channels, attributes, averaging, channel_coordinate, frequency_coordinate
+from .channels import (
+    Channels,
+    analysis_attributes,
+    channel_coordinate,
+    divide_into_segments,
+    frequency_coordinate,
+)
 
 
 def psd(
@@ -52,10 +58,10 @@ def psd(
     from scipy.signal import welch
 
     channels = Channels.from_record(record)
-    segments = averaging(channels, resolution, window, overlap)
-    frequency, density = welch(channels.values, channels.sample_rate, **segments.options)
+    segments = divide_into_segments(channels, resolution, window, overlap)
+    frequency, density = welch(channels.values, channels.sample_rate, **segments.scipy_options)
     rms = np.sqrt(density.sum(axis=-1) * segments.resolution)
-    independent = segments.independent
+    independent = segments.independent_count
     return xr.Dataset(
         {
             "psd": variable(("channel", "frequency"), density, "m2/s4/Hz", "power density"),
@@ -67,5 +73,5 @@ def psd(
             "resolution": variable((), segments.resolution, "Hz", "distance of the lines"),
         },
         {**channel_coordinate(channels.names), **frequency_coordinate(frequency)},
-        attributes("psd", "Power density", channels.title, window=window, overlap=overlap),
+        analysis_attributes("psd", "Power density", channels.title, window=window, overlap=overlap),
     )

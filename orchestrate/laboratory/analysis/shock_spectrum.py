@@ -15,7 +15,7 @@ from ...response.labels import variable
 from .channels import (
     Channels,
     Floats,
-    attributes,
+    analysis_attributes,
     channel_coordinate,
     frequency_coordinate,
 )
@@ -62,11 +62,13 @@ def shock_spectrum(
     """
     channels = Channels.from_record(record)
     ratio = checked_range("damping", damping, low=0.0, high=1.0, open_high=True)
-    natural = natural_frequencies(channels, frequencies)
+    natural = requested_or_default_frequencies(channels, frequencies)
     primary = np.empty((len(channels.names), len(natural)))
     residual = np.empty_like(primary)
     for column, frequency in enumerate(natural):
-        primary[:, column], residual[:, column] = peaks(channels, float(frequency), ratio)
+        primary[:, column], residual[:, column] = primary_and_residual_peaks(
+            channels, float(frequency), ratio
+        )
     over = ("channel", "frequency")
     text = "largest absolute acceleration of the oscillator"
     return xr.Dataset(
@@ -77,30 +79,32 @@ def shock_spectrum(
             "damping": variable((), ratio, "1", "damping ratio of the oscillators"),
         },
         {**channel_coordinate(channels.names), **frequency_coordinate(natural)},
-        attributes("shock_spectrum", "Shock response spectrum", channels.title),
+        analysis_attributes("shock_spectrum", "Shock response spectrum", channels.title),
     )
 
 
-def natural_frequencies(channels: Channels, given: ArrayLike | None) -> Floats:
-    """Return the natural frequencies of the oscillators, Hz: those given, or a default range."""
+def requested_or_default_frequencies(channels: Channels, requested: ArrayLike | None) -> Floats:
+    """Return the natural frequencies of the oscillators, Hz: as requested, or a default range."""
     highest = 0.1 * channels.sample_rate  # as ISO 18431-4 advises
-    if given is None:
+    if requested is None:
         octaves = math.log2(highest * channels.duration)
         count = max(1, math.floor(octaves * 12))  # twelve in an octave
         return np.asarray(highest * 2.0 ** (np.arange(-count, 1) / 12))
-    checked_unmasked("frequencies", given)
+    checked_unmasked("frequencies", requested)
     try:
-        natural = np.atleast_1d(np.asarray(given, dtype=float))
+        natural = np.atleast_1d(np.asarray(requested, dtype=float))
     except NOT_NUMBERS:
         natural = np.array([np.nan])
     limit = 0.5 * channels.sample_rate
     if natural.ndim != 1 or not len(natural) or not ((natural > 0.0) & (natural <= limit)).all():
         text = f"expected numbers > 0 and <= {limit:g} Hz, half the sampling rate"
-        raise InputError(f"frequencies = {given!r}: {text}")
+        raise InputError(f"frequencies = {requested!r}: {text}")
     return natural
 
 
-def peaks(channels: Channels, frequency: float, damping: float) -> tuple[Floats, Floats]:
+def primary_and_residual_peaks(
+    channels: Channels, frequency: float, damping: float
+) -> tuple[Floats, Floats]:
     """Compute an oscillator's largest absolute response; return it during and after the record."""
     from scipy.signal import lfilter
 
@@ -108,15 +112,17 @@ def peaks(channels: Channels, frequency: float, damping: float) -> tuple[Floats,
     # a peak between samples is at most 0.3 % higher
     parts = max(1, math.ceil(40 * frequency / rate))
     # at rest a sample before the record and a sample after it, straight as elsewhere
-    base = with_interpolated_points(np.pad(channels.values, ((0, 0), (1, 1))), parts)
+    base = insert_interpolated_points(np.pad(channels.values, ((0, 0), (1, 1))), parts)
     end = base.shape[1] - 1
     # one period of the free vibration after the record has its largest value
     padded = np.pad(base, ((0, 0), (0, math.ceil(parts * rate / frequency))))
-    response = np.abs(lfilter(*ramp_invariant(frequency, damping, parts * rate), padded, axis=1))
+    response = np.abs(
+        lfilter(*ramp_invariant_filter(frequency, damping, parts * rate), padded, axis=1)
+    )
     return response[:, : end + 1].max(axis=1), response[:, end:].max(axis=1)
 
 
-def with_interpolated_points(values: Floats, parts: int) -> Floats:
+def insert_interpolated_points(values: Floats, parts: int) -> Floats:
     """Insert points on the straight lines between samples."""
     if parts == 1:
         return values
@@ -125,7 +131,7 @@ def with_interpolated_points(values: Floats, parts: int) -> Floats:
     return np.concatenate([inner.reshape(len(values), -1), values[:, -1:]], axis=1)
 
 
-def ramp_invariant(
+def ramp_invariant_filter(
     frequency: float, damping: float, rate: float
 ) -> tuple[list[float], list[float]]:
     """Return numerator and denominator of the ramp-invariant filter from base to response."""

@@ -12,10 +12,10 @@ from .channels import (
     FEWEST_LINES,
     WINDOWS,
     Channels,
-    attributes,
+    analysis_attributes,
     channel_coordinate,
     frequency_coordinate,
-    segment_length,
+    samples_per_segment,
 )
 
 
@@ -60,7 +60,7 @@ def spectrogram(
     count, rate = len(channels.time), channels.sample_rate
     # as many lines times spectra as 32 times the samples
     usual = min(max(int((32.0 * count) ** 0.5), FEWEST_LINES), count)
-    length = segment_length(channels, resolution) or usual
+    length = samples_per_segment(channels, resolution) or usual
     hop = max(1, -(-(count - length) // most))
     transform = ShortTimeFFT.from_window(
         window, rate, length, length - hop, fft_mode="onesided2X", scale_to="magnitude"
@@ -82,5 +82,5 @@ def spectrogram(
             "time": variable("time", time, "s", "time in the middle of the spectrum"),
             **frequency_coordinate(transform.f),
         },
-        attributes("spectrogram", "Spectra over the time", channels.title, window=window),
+        analysis_attributes("spectrogram", "Spectra over the time", channels.title, window=window),
     )

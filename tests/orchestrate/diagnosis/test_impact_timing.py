@@ -156,7 +156,7 @@ def test_lengths_are_parts_of_the_period(monkeypatch, samples, memory):
     face = 2.0 * np.sin(TURN * np.arange(62 * samples) / samples)
     face[int(0.31 * samples) :: samples] += 1.0
     lengths, predicted, cuts = [], impact_timing.prediction_error, []
-    integrated = impact_timing.integrated
+    integrate_in_time = impact_timing.integrate_in_time
 
     def prediction(signal, order):
         lengths.append((len(signal), order))
@@ -164,7 +164,9 @@ def test_lengths_are_parts_of_the_period(monkeypatch, samples, memory):
 
     monkeypatch.setattr(impact_timing, "prediction_error", prediction)
     monkeypatch.setattr(
-        impact_timing, "integrated", lambda *all: cuts.append(all[2:]) or integrated(*all)
+        impact_timing,
+        "integrate_in_time",
+        lambda *all: cuts.append(all[2:]) or integrate_in_time(*all),
     )
     found = strikes_at(swept_channels(face, samples), [1], 45.0, TIMING)
     assert {order for _, order in lengths} == {memory}

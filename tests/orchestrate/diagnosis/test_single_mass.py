@@ -33,7 +33,7 @@ def test_motion_is_that_of_an_adaptive_integrator(name):
         beyond = max(0.0, mass.side * x - mass.position)
         spring = x + mass.square * x**2 + mass.cube * x**3 + mass.side * mass.stop * beyond
         rub = mass.friction * v / np.hypot(v, mass.slow)
-        base = pieces.taylor(np.array([t]))[0, 0]
+        base = pieces.derivatives_at(np.array([t]))[0, 0]
         return [v, -base - w**2 * spring - 2 * mass.zeta * w * v - rub]
 
     tight = {"rtol": 1e-8, "atol": 1e-12, "max_step": 1e-3}

@@ -13,7 +13,7 @@ from orchestrate.diagnosis.order_windows import sensor_channels, split_sweeps
 from orchestrate.diagnosis.undamaged import SoundStructure
 from orchestrate.diagnosis.wiring import WiringSettings, wiring_notes
 from orchestrate.laboratory.analysis.channels import Channels
-from orchestrate.laboratory.conversion import differentiated
+from orchestrate.laboratory.conversion import differentiate_and_advance
 from orchestrate.model import Structure
 
 RATE, COUNT = 1024.0, 20_480
@@ -51,7 +51,7 @@ def changed(**faces):
 
 
 def late(values, delay):
-    return differentiated(values, RATE, 0, -delay)
+    return differentiate_and_advance(values, RATE, 0, -delay)
 
 
 ERRORS = {

@@ -128,9 +128,9 @@ def test_each_threshold_of_a_jump_of_the_phase():
 
 @pytest.mark.parametrize(("turns", "named"), [(1.0, False), (1.1, True)])
 def test_whole_turns_are_how_a_phase_is_counted(monkeypatch, turns, named):
-    measured = wiring.measured_phase
+    measured = wiring.phase_of_box
     slipped = lambda record: measured(record) + TURN * turns * (record.time > 10.0)  # noqa: E731
-    monkeypatch.setattr(wiring, "measured_phase", slipped)
+    monkeypatch.setattr(wiring, "phase_of_box", slipped)
     assert jumps(0.0) == named
 
 
@@ -147,13 +147,13 @@ def test_one_in_ten_thousand_samples_at_an_extreme_is_a_saturated_channel(count,
 @pytest.mark.parametrize(("ratio", "kept"), [(1.9, True), (2.1, False)])
 def test_the_phase_of_the_base_is_taken_up_to_twice_its_frequency(monkeypatch, ratio, kept):
     boxes = []
-    measured = wiring.measured_phase
+    measured = wiring.phase_of_box
 
     def note(channels):
         boxes.append(channels.box)
         return measured(channels)
 
-    monkeypatch.setattr(wiring, "measured_phase", note)
+    monkeypatch.setattr(wiring, "phase_of_box", note)
     time = np.arange(20 * int(RATE)) / RATE
     other = 0.1 * np.sin(40.0 * np.pi * ratio * time)
     orders = record(np.sin(40.0 * np.pi * time) + other, np.full(20, 20.0))

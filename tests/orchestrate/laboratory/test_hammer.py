@@ -147,15 +147,15 @@ def test_each_threshold_of_a_knock(beats, count, longest):
     for begin, width, size in beats:
         force[begin : begin + width] = size
     channels = Channels(np.arange(1000) / 1e3, 1e3, ("force1",), force[np.newaxis], "x")
-    found = Knocks.from_force(force, channels, None)
+    found = Knocks.find_in_force(force, channels, None)
     assert ((len(found.starts), found.width) if found else (0, 0)) == (count, longest)
     if found:  # a hundredth is left at the end of a segment, no force past a knock's length
-        assert np.exp(-found.decay * found.length / found.rate) == pytest.approx(0.01)
-        spectrum, past = found.spectra(force, force[np.newaxis])[1], 3 * found.width
+        assert np.exp(-found.window_decay * found.length / found.rate) == pytest.approx(0.01)
+        spectrum, past = found.compute_spectra(force, force[np.newaxis])[1], 3 * found.width
         for place in (past - 1, past):
             other = 3.0 + force  # an offset is none
             other[found.starts[0] + place] += 0.04
-            off = np.abs(found.spectra(other, force[np.newaxis])[1] - spectrum).max()
+            off = np.abs(found.compute_spectra(other, force[np.newaxis])[1] - spectrum).max()
             assert (off < 1e-9 * spectrum.max()) == (place == past)
 
 

@@ -83,7 +83,7 @@ def test_a_stepped_sine_neither_jumps_nor_drifts():
     """Acceleration and velocity go on where the frequency changes; the place stays bounded."""
     pieces = STEPPED.pieces(1e-8)
     for change in STEPPED.measured_times()[:-1, 1]:
-        before, after = pieces.taylor(np.array([change - 1e-9, change + 1e-9]))
+        before, after = pieces.derivatives_at(np.array([change - 1e-9, change + 1e-9]))
         assert abs(before[0] - 4.0) < 1e-6 and abs(after[0] - 4.0) < 1e-6
     h = np.diff(pieces.nodes)
     a, b, c, d = pieces.derivatives.T
@@ -157,8 +157,8 @@ def test_sampled_acceleration_goes_through_its_samples_smoothly():
     values = np.random.default_rng(2).normal(size=50)
     pieces = Sampled(acceleration=values, sample_rate=100.0).pieces()
     assert np.allclose(pieces.derivatives[:, 0], values[:-1])
-    ends = pieces.taylor(pieces.nodes[1:-1] - 1e-12)
-    starts = pieces.taylor(pieces.nodes[1:-1])
+    ends = pieces.derivatives_at(pieces.nodes[1:-1] - 1e-12)
+    starts = pieces.derivatives_at(pieces.nodes[1:-1])
     for order, size in ((0, 1e-8), (1, 1e-6), (2, 1e-3)):
         assert np.abs(ends[:, order] - starts[:, order]).max() < size
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate import InputError, read_record, record
-from orchestrate.laboratory.record import Reading, checked_recorded_names
+from orchestrate.laboratory.record import ReadingOptions, make_record
 from orchestrate.laboratory.record_checks import clipped_share
 
 from .files import CHANNELS, RATE, G, drawn, swept, table_file
@@ -190,15 +190,15 @@ def test_uneven_times_are_resampled_on_request_but_not_over_gaps():
     true = np.interp(uneven, time, acceleration)
     with pytest.raises(InputError, match="expected equal steps: resample= makes them"):
         record(time=uneven, box_acceleration=true)
-    resampled = Reading(resample=True)
-    even = checked_recorded_names(uneven, {"box_acceleration": true}, None, {}, resampled)
+    resampled = ReadingOptions(resample=True)
+    even = make_record(uneven, {"box_acceleration": true}, None, {}, resampled)
     assert np.ptp(np.diff(even.time)) < 1e-12
     assert "jitter 0.00012 s, 0.12 step" in even.attrs["time_base"]
     expected = np.interp(even.time, time, acceleration)
     assert np.abs(even.box_acceleration.values - expected)[5:-5].max() < 0.02 * acceleration.max()
     gap = np.delete(np.arange(len(time)), slice(1000, 1009))
     with pytest.raises(InputError, match="row 1000: .*samples are lost"):
-        checked_recorded_names(uneven[gap], {"box_acceleration": true[gap]}, None, {}, resampled)
+        make_record(uneven[gap], {"box_acceleration": true[gap]}, None, {}, resampled)
 
 
 TIMES = [  # a heading, a step, how many; the unit that is right, and the rate then

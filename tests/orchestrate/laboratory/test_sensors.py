@@ -11,7 +11,7 @@ from scipy import signal
 from scipy.linalg import expm
 
 from orchestrate import Hammer, Sampled, Sensor, Structure, SweptSine, measure, shake
-from orchestrate.laboratory.analog_filter import anti_aliasing, phi_functions
+from orchestrate.laboratory.analog_filter import anti_aliasing_zeros_and_poles, phi_functions
 
 from ...sparing import ordinary
 
@@ -32,7 +32,7 @@ def state_space(sensor):
         zpk = signal.butter(sensor.order, edge, analog=True, output="zpk")
     parts = [zpk]
     if sensor.antialiasing:
-        zeros, poles = (x / 1000.0 for x in anti_aliasing(sensor.sample_rate))
+        zeros, poles = (x / 1000.0 for x in anti_aliasing_zeros_and_poles(sensor.sample_rate))
         parts.append((zeros, poles, (np.prod(-poles) / np.prod(-zeros)).real))
     a, b, c, _ = (np.zeros((0, 0)), np.zeros((0, 1)), None, None)
     for part in parts:  # in series, each by its own state-space form
@@ -89,7 +89,7 @@ def reference(structure, excitation, history, sensor, times):
             state[4 + 2 * n : 4 + 3 * n] += 1e3 * b * s.m1 * share
         if now in times:
             found.append([c @ state[4 + i * n : 4 + (i + 1) * n] for i in range(3)])
-        state[-4:] = pieces.taylor(np.array([now]))[0]
+        state[-4:] = pieces.derivatives_at(np.array([now]))[0]
         state = exponential(after - now) @ state
     return np.array(found)
 

@@ -172,10 +172,10 @@ def test_parts_of_the_record_are_the_whole_record(rate):
     job = ShakeJob(name="", **asked, sample_rate=rate, accuracy=1e-6)
     nodes = job.pieces.nodes
     cuts = [0.0, *nodes[[1, 2, 30, 31, len(nodes) // 2]], math.inf]
-    parts = [job.times(one, other) for one, other in pairwise(cuts)]
-    np.testing.assert_array_equal(np.concatenate(parts), job.times())
-    assert np.all(np.diff(job.times()) > 0.0) and job.times()[-1] <= job.pieces.duration
-    assert job.times()[-1] + 1.0 / rate > job.pieces.duration
+    parts = [job.sample_times(one, other) for one, other in pairwise(cuts)]
+    np.testing.assert_array_equal(np.concatenate(parts), job.sample_times())
+    assert np.all(np.diff(job.sample_times()) > 0.0) and job.sample_times()[-1] <= job.pieces.duration
+    assert job.sample_times()[-1] + 1.0 / rate > job.pieces.duration
 
 
 def test_the_last_sample_is_not_lost_by_rounding():
@@ -183,5 +183,5 @@ def test_the_last_sample_is_not_lost_by_rounding():
     for first in np.random.default_rng(0).uniform(5.0, 80.0, 100).tolist():
         sweep = SweptSine(first=first, last=1.1 * first, duration=14 / first, acceleration=1.0)
         asked = {"structure": BEAM, "excitation": sweep, "start": (0.0,) * 4}
-        times = ShakeJob(name="", **asked, sample_rate=50.0 * first, accuracy=1e-6).times()
+        times = ShakeJob(name="", **asked, sample_rate=50.0 * first, accuracy=1e-6).sample_times()
         assert len(times) == 701 and 0.0 <= sweep.duration - times[-1] < 1e-14
