@@ -17,7 +17,7 @@ from ..files import write_atomically
 from ..lazy import xr
 from ..model.arguments import checked_path
 from ..response.labels import variable
-from .columns import Assignment, Column, Columns, assign_columns, convert_to_si, times_in_s
+from .columns import ColumnAssignment, Column, Columns, assign_columns, convert_to_si, times_in_s
 from .conversion import (
     ACCELERATIONS,
     FORCES,
@@ -30,7 +30,7 @@ from .conversion import (
 )
 from .record import CHANNELS, SHORT_NAMES
 from .record_checks import is_ascending
-from .record_files import read_columns
+from .record_files import read_columns_in_process
 from .stated_channels import ACTING, SENSOR_WORDS, Channels, ChannelSetup
 
 NOT_READ = "not read"
@@ -92,7 +92,7 @@ def channels(
     """
     setup = ChannelSetup.from_argument(channels)
     rate = setup.sample_rate if sample_rate is None else sample_rate
-    table = read_columns(checked_path("path", path)).with_sample_rate(rate)
+    table = read_columns_in_process(checked_path("path", path)).with_sample_rate(rate)
     assignment = assign_columns(table, setup.columns)
     keywords = {"unit": unit, "sensitivity": sensitivity, "scale": scale, "delay": delay}
     stated = {name: setup.merge_keyword(name, value) for name, value in keywords.items()}
@@ -111,7 +111,9 @@ def channels(
     return listing
 
 
-def dataset_of_columns(table: Columns, assignment: Assignment, setup: ChannelSetup) -> xr.Dataset:
+def dataset_of_columns(
+    table: Columns, assignment: ColumnAssignment, setup: ChannelSetup
+) -> xr.Dataset:
     import xarray as xr
 
     roles = {index: name for name, index in assignment.indices.items()}

@@ -180,7 +180,7 @@ BY_USER, BY_NAME, LEFT, BY_ORDER = "by the caller", "by its name", "what is left
 
 
 @dataclass(frozen=True)
-class Assignment:
+class ColumnAssignment:
     """Index of the column of the time and of each channel, and how that is known."""
 
     indices: dict[str, int]
@@ -335,7 +335,7 @@ def scaled_values(table: Columns, column: Column, factor: float) -> Floats:
     return values
 
 
-def assign_columns(table: Columns, columns: Named) -> Assignment:
+def assign_columns(table: Columns, columns: Named) -> ColumnAssignment:
     """Decide which columns are the time and the channels.
 
     - A caller's columns are taken as stated; the time, if not stated, by its name, else the first.
@@ -351,12 +351,12 @@ def assign_columns(table: Columns, columns: Named) -> Assignment:
         indices = requested_column_indices(table, columns, wanted, ("time", *CHANNELS))
         if "time" in wanted and "time" not in indices:
             indices["time"] = column_indices_by_name(table, {"time": NAMES["time"]}).get("time", 0)
-        return Assignment(indices, dict.fromkeys(indices, BY_USER))
+        return ColumnAssignment(indices, dict.fromkeys(indices, BY_USER))
     known = assign_columns_by_name(table)
     if known.indices.keys() & set(CHANNELS):
         return known
     indices = column_indices_by_order(table, wanted)
-    return Assignment(indices, dict.fromkeys(indices, BY_ORDER))
+    return ColumnAssignment(indices, dict.fromkeys(indices, BY_ORDER))
 
 
 def column_indices_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, int]:
@@ -445,7 +445,7 @@ def requested_column_indices(
     return {name: column_index(table, wish) for name, wish in columns.items()}
 
 
-def assign_columns_by_name(table: Columns) -> Assignment:
+def assign_columns_by_name(table: Columns) -> ColumnAssignment:
     """Assign time and channels by their usual names, then the columns left."""
     indices = column_indices_by_name(table, NAMES)
     if "time" not in indices and not table.sample_rate:
@@ -460,15 +460,15 @@ def assign_columns_by_name(table: Columns) -> Assignment:
     rest = unassigned_column_indices(table, indices)
     channels = (*rest, *(i for name, i in indices.items() if name != "time"))
     if len({bool(table.columns[i].unit) for i in channels}) != 1:
-        return Assignment(indices, known)
+        return ColumnAssignment(indices, known)
     missing = [name for name in ("box_acceleration", "acceleration1") if name not in indices]
     if len(missing) == len(rest) == 1 and not FORCES.keys() & indices.keys():
-        return Assignment(indices | {missing[0]: rest[0]}, known | {missing[0]: LEFT})
+        return ColumnAssignment(indices | {missing[0]: rest[0]}, known | {missing[0]: LEFT})
     faces = [name for name in ("acceleration1", "acceleration2") if name not in indices]
     if {"box_acceleration", *FORCES} & indices.keys() and 0 < len(rest) <= len(faces) == 2:
         proposed = dict(zip(faces, rest, strict=False))
-        return Assignment(indices | proposed, known | dict.fromkeys(proposed, BY_ORDER))
-    return Assignment(indices, known)
+        return ColumnAssignment(indices | proposed, known | dict.fromkeys(proposed, BY_ORDER))
+    return ColumnAssignment(indices, known)
 
 
 def column_indices_by_name(table: Columns, names: Mapping[str, str]) -> dict[str, int]:

@@ -17,7 +17,7 @@ from .columns import (
     CURVE_NAMES,
     FREQUENCIES,
     RATIO_UNITS,
-    Assignment,
+    ColumnAssignment,
     Column,
     Columns,
     column_indices_by_name,
@@ -28,7 +28,7 @@ from .columns import (
 )
 from .conversion import normalize_unit, si_factor
 from .pieces import Floats
-from .record_files import file_kind, read_columns
+from .record_files import file_kind, read_columns_in_process
 from .resonance_curve import CurveColumns, acceleration_factor, make_curve
 from .signals import LEVEL, checked_quantity
 
@@ -99,11 +99,11 @@ def read_curve(
     path = checked_path("path", path)
     if file_kind(path) != "csv":
         raise InputError(f"{path}: expected columns of text (.csv, .txt, .tsv, .asc, .dat)")
-    table = read_columns(path, True)  # fields may be empty
+    table = read_columns_in_process(path, True)  # fields may be empty
     warn_of_lines_left_out(table)
     indices = curve_column_indices(table, columns)
     known = BY_NAME if columns is None else BY_USER
-    assignment = Assignment(indices, dict.fromkeys(indices, known))
+    assignment = ColumnAssignment(indices, dict.fromkeys(indices, known))
     assignment.warn_of_guesses(table, "columns=")
     made = curve_columns(table, indices, unit, level)
     words = {"title": f"Resonance curve {path.name}", "source": path.name}

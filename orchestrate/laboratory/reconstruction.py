@@ -111,7 +111,7 @@ class Motion:
             [evaluate_taylor(series, lengths), evaluate_taylor(series[1:], lengths)]
         ).T
 
-    def step_count(self, length: float) -> int:
+    def taylor_step_count(self, length: float) -> int:
         """Return the number of equal steps in which Taylor series cover a length of time."""
         s = self.structure
         alone = [(s.m1, s.k1, s.d1), (s.m2, s.k2, s.d2)]
@@ -135,7 +135,7 @@ class Motion:
         """Return when the contact force first falls below 0, s; ``begin`` if it does not."""
         state = self._state_at(begin)
         touching = np.array([True])
-        mesh = np.linspace(begin, end, 1 + self.step_count(end - begin))
+        mesh = np.linspace(begin, end, 1 + self.taylor_step_count(end - begin))
         nodes = self.pieces.nodes
         mesh = np.union1d(mesh, nodes[(nodes > begin) & (nodes < end)])
         for start, stop in zip(mesh[:-1], mesh[1:], strict=True):
@@ -156,7 +156,9 @@ class Motion:
         touching = self.touching[index : index + 1]
         inside = (self.impact_times > now) & (self.impact_times <= time)
         for i in np.flatnonzero(inside):
-            mesh = np.linspace(now, self.impact_times[i], 1 + self.step_count(float(self.times[1])))
+            mesh = np.linspace(
+                now, self.impact_times[i], 1 + self.taylor_step_count(float(self.times[1]))
+            )
             for start, stop in zip(mesh[:-1], mesh[1:], strict=True):
                 state = self.states_later(
                     state, touching, np.array([start]), np.array([stop - start])
@@ -236,7 +238,7 @@ class SmoothAccelerations:
 def solve_smooth_accelerations(motion: Motion, sample_rate: float) -> SmoothAccelerations:
     """Solve the equations of motion between the samples; return the smooth accelerations."""
     steps = math.floor(float(motion.times[-1]) * sample_rate * (1.0 + 1e-14))
-    parts = motion.step_count(1.0 / sample_rate)
+    parts = motion.taylor_step_count(1.0 / sample_rate)
     grid = np.arange(steps * parts + 1) / (sample_rate * parts)
     grid = grid[grid <= motion.times[-1]]
     times = grid[::parts]

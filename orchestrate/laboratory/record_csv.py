@@ -61,8 +61,8 @@ def read_csv(path: Path, gaps: bool = False) -> Columns:
     columns = len(dialect.split(lines[dialect.first]))
     if gaps:
         columns = max(columns, *(len(dialect.split(line)) for line in lines[: dialect.first]), 1)
-        text = fill_gaps(text, dialect, columns)
-    names = column_headings(lines[: dialect.first], dialect, columns)
+        text = fill_empty_fields(text, dialect, columns)
+    names = column_names_and_units(lines[: dialect.first], dialect, columns)
     values = parse_numbers(path, text, dialect, [name for name, _ in names])
     first = dialect.split(lines[dialect.first])
     sensors = column_sensitivities(lines[: dialect.first], dialect, columns)
@@ -134,7 +134,7 @@ def settle_decimal_sign(dialect: Dialect, lines: list[str]) -> Dialect:
     return replace(dialect, decimal=",") if comma else dialect
 
 
-def column_headings(lines: list[str], dialect: Dialect, count: int) -> list[tuple[str, str]]:
+def column_names_and_units(lines: list[str], dialect: Dialect, count: int) -> list[tuple[str, str]]:
     """Return names and units of columns from the lines above the numbers."""
     rows = [dialect.split(line.lstrip("#%").strip(" ")) for line in lines]
     fitting = [[field.strip() for field in row] for row in rows if len(row) == count]
@@ -171,7 +171,7 @@ def cut_footing(text: str, dialect: Dialect) -> tuple[str, str]:
     return body, f"row {row}: {footing[:80]!r} after the numbers is left out"
 
 
-def fill_gaps(text: str, dialect: Dialect, columns: int) -> str:
+def fill_empty_fields(text: str, dialect: Dialect, columns: int) -> str:
     """Return a text with nan in place of each empty field of its numbers."""
     if dialect.separator == " ":
         return text

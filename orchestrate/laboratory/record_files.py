@@ -114,7 +114,7 @@ def read_record(
     """
     path, setup = checked_path("path", path), ChannelSetup.from_argument(channels)
     rate = setup.sample_rate if sample_rate is None else sample_rate
-    table, kind = read_columns(path).with_sample_rate(rate), file_kind(path)
+    table, kind = read_columns_in_process(path).with_sample_rate(rate), file_kind(path)
     if kind == "wav" and not setup.merge_keyword("scale", scale):
         raise InputError(f"{path}: no scale=; expected for a WAV file: m/s2 at its full scale")
     keywords = {"unit": unit, "sensitivity": sensitivity, "scale": scale, "delay": delay}
@@ -286,7 +286,7 @@ COMPILED = (
 )  # readers that a damaged file may harm so that they misread the next one
 
 
-def read_columns(path: Path, *arguments: object) -> Columns:
+def read_columns_in_process(path: Path, *arguments: object) -> Columns:
     """Read the columns of a file in a process of its own; make names and texts printable."""
     kind = file_kind(path)
     check_readable_size(path)

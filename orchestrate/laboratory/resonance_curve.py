@@ -161,7 +161,7 @@ def make_curve(
         raise InputError("resonance curve: no amplitude; expected amplitude1, amplitude2 or both")
     known = complete_rows(columns)
     frequency = columns.frequency[known]
-    check_frequencies(frequency, np.flatnonzero(known) + columns.first_row)
+    check_monotonic_frequencies(frequency, np.flatnonzero(known) + columns.first_row)
     level = columns.broadcast_to_frequencies("level", columns.level)[known]
     check_positive("level", level, np.flatnonzero(known) + columns.first_row)
     faces = sorted(columns.amplitudes)
@@ -240,7 +240,7 @@ def describe_dropped_rows(known: NDArray[np.bool_], first_row: int) -> str:
     return f"{several if len(rows) > 1 else f'row {rows[0]}'} dropped: not a number"
 
 
-def check_frequencies(frequency: Floats, rows: NDArray[np.intp]) -> None:
+def check_monotonic_frequencies(frequency: Floats, rows: NDArray[np.intp]) -> None:
     """Check that frequencies are above 0, and ascend or descend."""
     check_positive("frequency", frequency, rows)
     steps = np.diff(frequency)

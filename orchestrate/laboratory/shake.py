@@ -262,13 +262,13 @@ def shake(
 
 
 def check_forces(
-    structure: Structure, beside: Excitation, has_frequency: bool, drives: str
+    structure: Structure, additional: Excitation, has_frequency: bool, drives: str
 ) -> None:
     """Raise ``InputError`` unless forces have a mass to act on, and harmonic ones a frequency."""
     for name in FORCES:
-        value = getattr(beside, name)
+        value = getattr(additional, name)
         if value and not has_frequency:
             raise InputError(f"{name} = {value!r}: without its frequency; expected frequency= too")
-    if beside.force2 or drives == "force2":
+    if additional.force2 or drives == "force2":
         structure.require_mass_2("force2")
-    beside.check(structure)
+    additional.check(structure)

@@ -174,7 +174,9 @@ def test_parts_of_the_record_are_the_whole_record(rate):
     cuts = [0.0, *nodes[[1, 2, 30, 31, len(nodes) // 2]], math.inf]
     parts = [job.sample_times(one, other) for one, other in pairwise(cuts)]
     np.testing.assert_array_equal(np.concatenate(parts), job.sample_times())
-    assert np.all(np.diff(job.sample_times()) > 0.0) and job.sample_times()[-1] <= job.pieces.duration
+    assert (
+        np.all(np.diff(job.sample_times()) > 0.0) and job.sample_times()[-1] <= job.pieces.duration
+    )
     assert job.sample_times()[-1] + 1.0 / rate > job.pieces.duration
 
 
