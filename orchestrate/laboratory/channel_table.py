@@ -17,7 +17,7 @@ from ..files import write_atomically
 from ..lazy import xr
 from ..model.arguments import checked_path
 from ..response.labels import variable
-from .columns import ColumnAssignment, Column, Columns, assign_columns, convert_to_si, times_in_s
+from .columns import Column, ColumnAssignment, Columns, assign_columns, convert_to_si, times_in_s
 from .conversion import (
     ACCELERATIONS,
     FORCES,
