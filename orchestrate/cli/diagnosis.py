@@ -130,7 +130,7 @@ what it gives:
         return f"diagnose_{sweep.path.stem}{number}_{digest(checksums, guess, read_as)}"
 
     def read_all_records(self) -> tuple[dict[Sweep, xr.Dataset], list[str]]:
-        from ..diagnosis.fit import checked_data
+        from ..diagnosis.fit import checked_record_data
         from ..diagnosis.order_windows import split_sweeps
 
         records: dict[Sweep, xr.Dataset] = {}
@@ -139,7 +139,7 @@ what it gives:
         for path in paths:
             try:
                 record = self.read_one_record(path)
-                checked_data(record)
+                checked_record_data(record)
                 parts = split_sweeps(record)
                 several = len(parts) > 1
                 records |= {Sweep(path, n * several): one for n, one in enumerate(parts, 1)}
@@ -241,14 +241,14 @@ The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s
 
     def ask(self) -> tuple[Structure, Keywords]:
         structure = self.read_structure()
-        from ..diagnosis.plan_test import USUAL_NOISE, usual_ends, usual_sensor
+        from ..diagnosis.plan_test import USUAL_NOISE, default_sensor, default_sweep_range
 
-        last = (self.hz or usual_ends(structure))[-1]
+        last = (self.hz or default_sweep_range(structure))[-1]
         if self.sensor is not None and self.noise is None:
             self.noise = USUAL_NOISE
-        sensor: Any = self.read_sensor(partial(usual_sensor, last))
+        sensor: Any = self.read_sensor(partial(default_sensor, last))
         if self.faces in ("1", "2"):
-            sensor = {f"acceleration{self.faces}": sensor or usual_sensor(last)}
+            sensor = {f"acceleration{self.faces}": sensor or default_sensor(last)}
         return structure, {**self.keywords(), "frequencies": self.hz, "sensor": sensor}
 
     def display_units(self, question: Keywords) -> Units:

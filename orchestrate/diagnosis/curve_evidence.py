@@ -24,9 +24,8 @@ from .order_windows import (
     ORDERS,
     SAMPLES_PER_PERIOD,
     Complexes,
-    OrderWindows,
     RecordOrders,
-    assembled_windows,
+    assemble_windows,
 )
 from .settings import SETTINGS, Settings
 
@@ -34,6 +33,7 @@ Numbers = tuple[float | None, ...]
 Kind = TypeVar("Kind")
 SETTLE_CYCLES = (30, 200)  # fewest and most cycles before
 COARSE_SAMPLES = 7.0  # in a period of the highest frequency, for a coarse search
+COARSE_POINTS = 30  # most points of a coarse search
 
 
 @dataclass(frozen=True)
@@ -104,14 +104,15 @@ class CurveData:
     def coarse_evidence(self) -> CurveEvidence:
         """Return the evidence of some points near the resonance, for a coarse search."""
         whole, frequency = self.evidence(), np.array(self.frequency)
-        low, high = min(whole.peaks) * COARSE_RANGE[0], max(whole.peaks) * COARSE_RANGE[1]
-        near = np.flatnonzero((frequency > low) & (frequency < high))
-        some = self.select(near[:: math.ceil(len(near) / 30)])  # most points of a coarse search
+        low, high = (end(whole.peak_frequencies) for end in (min, max))
+        inside = (frequency > low * COARSE_RANGE[0]) & (frequency < high * COARSE_RANGE[1])
+        near = np.flatnonzero(inside)
+        some = self.select_points(near[:: math.ceil(len(near) / COARSE_POINTS)])
         chosen = some if len(some.frequency) >= FEWEST_POINTS else self
         settle = max(SETTLE_CYCLES[0], self.settle_cycles // 2)
         return curve_evidence(chosen, settle, COARSE_SAMPLES)
 
-    def select(self, points: NDArray[np.intp]) -> CurveData:
+    def select_points(self, points: NDArray[np.intp]) -> CurveData:
         """Return the curve with only the points of these indices."""
 
         def at_points(row: tuple[Kind, ...]) -> tuple[Kind, ...]:
@@ -173,7 +174,8 @@ def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> C
     # a curve has no samples of the faces
     values = np.stack([box, *np.full((len(data.sensors), len(time)), np.nan)])
     channels = Channels(time, rate, (BOX, *data.sensors), values, "resonance curve")
-    windows = settled_windows(channels, sine)
+    played = list(dwell_windows(channels, sine, sine.phase(time)))
+    windows = assemble_windows(channels, played[1:])
     amplitude = np.array(data.amplitude, dtype=float)
     phase = np.array(data.phase, dtype=float)
     measured = amplitude.astype(complex)
@@ -193,12 +195,6 @@ def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> C
     return CurveEvidence(orders, pieces, *rest)
 
 
-def settled_windows(channels: Channels, sine: SteppedSine) -> OrderWindows:
-    """Return the windows of a stepped sine in which the motion has settled, one a frequency."""
-    phase = sine.phase(channels.time)
-    return assembled_windows(channels, list(dwell_windows(channels, sine, phase))[1:])
-
-
 @dataclass(frozen=True)
 class CurveEvidence(Evidence):
     """Orders of a resonance curve, their errors, and the stepped sine as the input of motions."""
@@ -212,45 +208,44 @@ class CurveEvidence(Evidence):
         return np.arange(len(self.orders.windows))
 
     @cached_property
-    def size(self) -> Floats:
+    def order_1_size(self) -> Floats:
         """Amplitude of order 1 at each frequency, shape (sensors, windows), m/s2."""
-        return np.abs(self.measured[:, 0])
+        return np.abs(self.measured_orders[:, 0])
 
     @cached_property
-    def error(self) -> Floats:
+    def standard_deviation(self) -> Floats:
         """Standard deviations (model error and floor), shape (sensors, 3, windows), m/s2."""
-        floor = np.maximum(self.floor, 1e-9 * self.size.max())
-        model = self.settings.model_error * self.size[:, None, :].repeat(3, axis=1)
+        floor = np.maximum(self.floor, 1e-9 * self.order_1_size.max())
+        model = self.settings.model_error * self.order_1_size[:, None, :].repeat(3, axis=1)
         return np.sqrt(floor[:, None, :] ** 2 + model**2)
 
     @cached_property
-    def base(self) -> Complexes:
+    def base_orders(self) -> Complexes:
         """Orders 1, 2, 3 of the base, as far as they are in what was measured, m/s2."""
-        return 0.0 * super().base if self.relative_motion else super().base
+        return 0.0 * super().base_orders if self.relative_motion else super().base_orders
 
     @cached_property
-    def displacement(self) -> float:
+    def largest_displacement(self) -> float:
         """Largest amplitude of order 1 relative to the base, m, at the resonance."""
-        moved = np.abs(self.measured[:, 0] - (0.0 if self.relative_motion else self.level))
+        moved = np.abs(self.measured_orders[:, 0] - (0.0 if self.relative_motion else self.level))
         return float((moved / (2.0 * math.pi * self.frequency) ** 2).max())
 
     @cached_property
-    def present(self) -> NDArray[np.bool_]:
+    def measured_rows(self) -> NDArray[np.bool_]:
         """Mask of the rows of residuals that were measured, shape (4,); the others are left out."""
         found = np.ones(4, dtype=bool)
         found[1] = self.with_phase.any()
-        found[2:] = np.isfinite(self.measured[:, 1:]).any(axis=(0, 2))
+        found[2:] = np.isfinite(self.measured_orders[:, 1:]).any(axis=(0, 2))
         return found
 
-    def first_order(self, row: int, computed: Complexes) -> Complexes:
+    def order_1_to_match(self, row: int, computed: Complexes) -> Complexes:
         """Return the measured order 1 of a sensor, with the computed phase where it has none."""
-        size, known = self.measured[row, 0], self.with_phase[row][self.used_windows]
+        size, known = self.measured_orders[row, 0], self.with_phase[row][self.used_windows]
         return np.where(known, size, np.abs(size) * np.exp(1j * np.angle(computed)))
 
-    def order_residuals(self, computed: Complexes) -> Floats:
+    def residuals_of_orders(self, computed: Complexes) -> Floats:
         """Return computed less measured orders, over the errors, in the rows that were measured."""
-        return super().order_residuals(computed)[:, self.present]
+        return super().residuals_of_orders(computed)[:, self.measured_rows]
 
     def unbounded_residuals(self) -> Floats:
-        """Return the residuals that stand for a motion that grows without bounds."""
-        return super().unbounded_residuals()[:, self.present]
+        return super().unbounded_residuals()[:, self.measured_rows]

@@ -53,9 +53,9 @@ class Findings:
     samples: float = math.inf  # in a period at the resonance
     settings: Settings = SETTINGS
 
-    def record_conditions(self) -> list[Condition]:
+    def usability_conditions(self) -> list[Condition]:
         """Return the conditions under which a record decides anything."""
-        factor = factor_outside(self.resonance, *self.guessed)
+        factor = factor_outside_range(self.resonance, *self.guessed)
         low, high = self.guessed
         most = 100.0 * self.settings.end_response
         away = f"a factor of {factor:.3g} from {self.whose} {low:.3g} to {high:.3g} Hz"
@@ -88,7 +88,7 @@ class Findings:
         ]
 
     def no_opening_conditions(self) -> list[Condition]:
-        most, heard = 100.0 * self.settings.hidden, self.strikes.word()
+        most, heard = 100.0 * self.settings.hidden, self.strikes.what_strikes()
         alone = " Two modes of a sound beam do not describe how the sensors differ."
         return [
             Condition(
@@ -107,9 +107,9 @@ class Findings:
             ),
         ]
 
-    def broken_conditions(self) -> list[Condition]:
-        """Return what keeps the record from being usable, else from showing no opening."""
-        for conditions in (self.record_conditions(), self.no_opening_conditions()):
+    def violated_conditions(self) -> list[Condition]:
+        """Return what keeps the record from being usable; if nothing, from showing no opening."""
+        for conditions in (self.usability_conditions(), self.no_opening_conditions()):
             if broken := [one for one in conditions if not one.holds]:
                 return broken
         return []
@@ -117,17 +117,17 @@ class Findings:
     @property
     def is_usable(self) -> bool:
         """Whether the record decides anything."""
-        return all(one.holds for one in self.record_conditions())
+        return all(one.holds for one in self.usability_conditions())
 
-    def seen(self, word: str) -> str:
-        """Return a sentence with the numbers of the record; ``word``: what strikes in it."""
+    def describe(self, strike: str) -> str:
+        """Return a sentence with the numbers of the record and what strikes in it."""
         text = (
             f"At {self.high:.3g} m/s\u00b2 order 2 is up to {digits(100.0 * self.order2)} % of "
             f"order 1, {digits(self.excess, 1.0)} times the size from which it counts as seen"
         )
         if self.sensors > 1:
             text += f"; the two faces differ by {digits(self.apart, 1.0)} times what counts as seen"
-        return f"{text}; {word} ({self.strikes.numbers()})."
+        return f"{text}; {strike} ({self.strikes.format_quantities()})."
 
 
 @dataclass(frozen=True)
@@ -142,9 +142,9 @@ class Beam:
         - "undecided" without a usable record: one whose channels are not saturated (`clipped`),
           whose sweep passes the resonance (`end_response`), which is the guess's (`guess_factor`),
           with `samples` in its period.
-        - "delaminated": in a usable record faces strike (:meth:`.impact_timing.Strikes.word`; with
-          one sensor by a guess or two levels, `doubled`); "undecided" if another one, of no lower
-          level (`same_level`), contradicts.
+        - "delaminated": in a usable record faces strike (:meth:`.Strikes.what_strikes`; with one
+          sensor by a guess or two levels, `doubled`); "undecided" if another one, of no lower level
+          (`same_level`), contradicts.
         - "no opening seen": in all of them nothing is heard, order 2 and the difference of the
           faces are below their thresholds, and noise hides no order 2 of `hidden`.
         - "not described": the base strikes, or what is heard is not locked to the stroke, or kinks,
@@ -153,10 +153,10 @@ class Beam:
           tell a stop from a softer face.
         """
         usable = self.usable
-        words = {self.words[one] for one in usable}
+        words = {self.strike_words[one] for one in usable}
         if FACES in words:
-            return UNDECIDED if self.against else DELAMINATED
-        if usable and all(not one.broken_conditions() for one in usable):
+            return UNDECIDED if self.contradicting else DELAMINATED
+        if usable and all(not one.violated_conditions() for one in usable):
             return NOT_SEEN
         is_other = words & {"base strikes", "not locked", "kinks"}
         return NOT_DESCRIBED if is_other and not self.may_be_a_stop else UNDECIDED
@@ -164,7 +164,7 @@ class Beam:
     @property
     def may_be_a_stop(self) -> bool:
         """Whether something strikes that is a stop or a softer face, and no faces do."""
-        words = {self.words[one] for one in self.usable}
+        words = {self.strike_words[one] for one in self.usable}
         return FACES not in words and bool(words & {STOP, SOFTER})
 
     @cached_property
@@ -174,12 +174,12 @@ class Beam:
         return sorted(usable, key=lambda one: -one.high)
 
     @cached_property
-    def words(self) -> dict[Findings, str]:
+    def strike_words(self) -> dict[Findings, str]:
         """What strikes in each record, with what all records say of the stiffness."""
         known = {"stiffness": 1.0} if self.has_two_levels else {}
         every = ((one, one.strikes) for one in self.records)
         return {
-            one: (replace(own, **known) if math.isnan(own.stiffness) else own).word()
+            one: (replace(own, **known) if math.isnan(own.stiffness) else own).what_strikes()
             for one, own in every
         }
 
@@ -192,41 +192,42 @@ class Beam:
     @cached_property
     def opening_level(self) -> float:
         """Lowest level of the base at which faces strike, m/s2; NaN where none do."""
-        levels = [one.high for one in self.usable if self.words[one] == FACES]
+        levels = [one.high for one in self.usable if self.strike_words[one] == FACES]
         return min(levels, default=math.nan)
 
     @cached_property
-    def against(self) -> list[Findings]:
+    def contradicting(self) -> list[Findings]:
         """Records of no lower level than the one at which faces strike that show otherwise."""
         level = self.opening_level  # NaN: none
         return [
             one
             for one in self.usable
             if one.high >= one.settings.same_level * level
-            and self.words[one] not in (FACES, SOFTER)
+            and self.strike_words[one] not in (FACES, SOFTER)
         ]
 
-    def broken_conditions(self) -> list[Condition]:
+    def violated_conditions(self) -> list[Condition]:
+        """Return what keeps the beam from a verdict, empty of one that is decided."""
         if self.verdict() not in (UNDECIDED, NOT_DESCRIBED):
             return []
-        if self.against:
-            words = ", ".join(sorted({self.words[one] for one in self.against}))
+        if self.contradicting:
+            words = ", ".join(sorted({self.strike_words[one] for one in self.contradicting}))
             text = f"Faces strike in one record, another of no lower level contradicts: {words}."
             return [Condition(False, text)]
-        return [stop for one in self.usable or self.records for stop in one.broken_conditions()]
+        return [stop for one in self.usable or self.records for stop in one.violated_conditions()]
 
     def reason(self) -> str:
         """Return sentences that say by which numbers the verdict was decided, or stopped."""
-        sentences = [one.seen(self.words[one]) for one in self.records]
+        sentences = [one.describe(self.strike_words[one]) for one in self.records]
         if len(self.records) > 1 and self.verdict() == DELAMINATED:
             sentences.append(f"Faces strike from {self.opening_level:.3g} m/s\u00b2 on.")
         return " ".join(
-            dict.fromkeys([*sentences, *(one.reason for one in self.broken_conditions())])
+            dict.fromkeys([*sentences, *(one.reason for one in self.violated_conditions())])
         )
 
     def next_measurement(self) -> str:
         """Recommend, in a sentence, the measurement that would decide or confirm the verdict."""
-        advice = [one.advice for one in self.broken_conditions() if one.advice]
+        advice = [one.advice for one in self.violated_conditions() if one.advice]
         one_sensor = all(one.sensors == 1 for one in self.records)
         other = "an accelerometer on the other face" if one_sensor else "a slower sweep"
         second = "" if self.has_two_levels else ", or another sweep at twice the level"
@@ -260,6 +261,6 @@ def digits(value: float, limit: float = math.nan) -> str:
     return f"{next((one for one in rounded if one != limit), value):.10g}"
 
 
-def factor_outside(value: float, low: float, high: float) -> float:
-    """Return by which factor a value lies below or above a range; at most 1 inside."""
+def factor_outside_range(value: float, low: float, high: float) -> float:
+    """Return the factor by which a value lies below or above a range; at most 1 inside."""
     return max(value / high, low / value)

@@ -23,19 +23,19 @@ from ..running.job import Table
 from ..running.options import Running
 from ..running.runner import compute_dataset, compute_datasets
 from .decision_rule import DELAMINATED, NOT_SEEN, Beam, Findings
-from .even_orders import smallest_openings, thresholds
+from .even_orders import order_2_thresholds, smallest_visible_openings
 from .evidence import Participation
-from .fit import Results, checked_data, checked_free, delaminated_guess
+from .fit import Results, checked_delaminated_guess, checked_free_parameters, checked_record_data
 from .hypotheses import FREE
-from .impact_timing import strikes
+from .impact_timing import measure_strikes
 from .search_job import (
     RecordData,
     SearchJob,
-    bonded_even,
     cached_channels,
+    cached_even_orders,
     cached_evidence,
+    cached_face_difference,
     cached_orders,
-    faces_apart,
 )
 from .settings import Changes, Settings, checked_settings
 from .undamaged import SoundStructure
@@ -147,7 +147,7 @@ def detect(
     >>> str(answer.verdict.values)
     'no opening seen'
     """
-    rest = checked_free(free), participation, checked_settings(settings)
+    rest = checked_free_parameters(free), participation, checked_settings(settings)
     return compute_dataset(beam_job(record, guess, *rest), running, finder(running))
 
 
@@ -196,12 +196,12 @@ def detect_all(
     """
     if not isinstance(records, Mapping) or not records:
         raise InputError("records: expected one record or more, by names")
-    rest = guess, checked_free(free), participation, checked_settings(settings)
-    jobs = [named_job(name, record, *rest) for name, record in records.items()]
+    rest = guess, checked_free_parameters(free), participation, checked_settings(settings)
+    jobs = [named_beam_job(name, record, *rest) for name, record in records.items()]
     return dict(zip(records, compute_datasets(jobs, running, finder(running)), strict=True))
 
 
-def named_job(name: str, record: xr.Dataset | Sequence[xr.Dataset], *rest: Any) -> DetectJob:
+def named_beam_job(name: str, record: xr.Dataset | Sequence[xr.Dataset], *rest: Any) -> DetectJob:
     """Return the job of one beam; a message about its records names it."""
     try:
         return replace(beam_job(record, *rest), name=name)
@@ -217,9 +217,9 @@ def beam_job(
     settings: Settings,
 ) -> DetectJob:
     """Return the job that decides on the records of a beam, and fits the one that hears most."""
-    structure = None if guess is None else delaminated_guess(guess)
-    every = checked_records(record, structure, participation, settings)
-    made = structure or halves_around(cached_orders(every[0]).resonance, settings)
+    structure = None if guess is None else checked_delaminated_guess(guess)
+    every = checked_records_of_beam(record, structure, participation, settings)
+    made = structure or assumed_halves(cached_orders(every[0]).resonance, settings)
     shown = [record_findings(one, made, structure is not None) for one in every]
     verdict = Beam(tuple(shown)).verdict()
     fitted = int(np.argmax([one.strikes.heard * one.is_usable for one in shown]))
@@ -234,7 +234,7 @@ def beam_job(
     )
 
 
-def checked_records(
+def checked_records_of_beam(
     record: xr.Dataset | Sequence[xr.Dataset],
     guess: Structure | None,
     participation: Participation,
@@ -242,13 +242,13 @@ def checked_records(
 ) -> tuple[RecordData, ...]:
     """Check one record or several of one beam; a message names which of them is wrong."""
     if isinstance(record, xr.Dataset) or not isinstance(record, Sequence):
-        return (checked_data(record, guess, participation, settings),)
+        return (checked_record_data(record, guess, participation, settings),)
     if not record:
         raise InputError("record: an empty list; expected one record or more of one beam")
     found = []
     for number, one in enumerate(record, 1):
         try:
-            found.append(checked_data(one, guess, participation, settings))
+            found.append(checked_record_data(one, guess, participation, settings))
         except InputError as error:
             raise InputError(f"record {number} of {len(record)}: {error}") from None
     return tuple(found)
@@ -275,20 +275,19 @@ class DetectJob(SearchJob):
 
     def dataset(self, table: Table) -> xr.Dataset:
         results, beam = Results.from_table(self, table), self.beam()
-        findings, even = beam.records[len(self.others[0])], results.even
+        findings, even = beam.records[len(self.others[0])], results.even_orders
         whole, channels = cached_orders(self.data), cached_channels(self.data)
-        every, coordinates = results.comparison()
+        every, coordinates = results.order_variables_and_coordinates()
         same = WiringSettings(clipped=findings.settings.clipped)
         wiring = "; ".join(note.text for note in wiring_notes(channels, same))
         ratio = results.misfit[: len(self.sound)].min() / results.misfit[len(self.sound) :].min()
-        words = [beam.words[one] for one in beam.records]
+        levels = [one.high for one in beam.records]
+        words = [beam.strike_words[one] for one in beam.records]
         scalars = {
             "verdict": ((), beam.verdict(), {"long_name": "verdict"}),
             "ratio": variable((), ratio, "1", "misfit of sound over that of delaminated"),
             "opening_level": variable((), beam.opening_level, "m/s2", "level at which it opens"),
-            "record_level": variable(
-                "record", [one.high for one in beam.records], "m/s2", "highest level of a record"
-            ),
+            "record_level": variable("record", levels, "m/s2", "highest level of a record"),
             "record_strikes": ("record", words, {"long_name": "what strikes in a record"}),
             **{
                 name: variable((), getattr(findings, of), *at) for name, (of, *at) in STATED.items()
@@ -297,10 +296,10 @@ class DetectJob(SearchJob):
             "order2": variable("window", even.ratio, "1", "order 2 over order 1"),
             "order2_threshold": variable("window", even.threshold, "1", "size that counts as seen"),
         }
-        stated = stated_hypotheses(results, beam.verdict())
-        numbers = results.parameters(stated)
+        stated = is_hypothesis_stated(results, beam.verdict())
+        numbers = results.parameter_variables(stated)
         best = int(np.argmin(np.where(stated, results.misfit, np.inf)))
-        unclear = dict.fromkeys(results.undetermined(best).values()) if stated[best] else ()
+        unclear = dict.fromkeys(results.why_undetermined(best).values()) if stated[best] else ()
         del numbers["asked"]
         unsized = beam.verdict() == DELAMINATED and not stated.any()
         said = [UNSIZED] * unsized + [UNFITTED] * (not self.is_worth_a_search)
@@ -313,11 +312,11 @@ class DetectJob(SearchJob):
             assumed="; ".join(ASSUMED if self.is_guessed else (WITHOUT_GUESS, *ASSUMED[1:])),
             direction=sweep_direction(whole.windows.frequency),
             wiring=wiring,
-            strikes=f"{beam.words[findings]} ({findings.strikes.numbers()})",
+            strikes=f"{beam.strike_words[findings]} ({findings.strikes.format_quantities()})",
         )
 
 
-def halves_around(resonance: float, settings: Settings) -> Structure:
+def assumed_halves(resonance: float, settings: Settings) -> Structure:
     """Return halves of equal mass at both sides of a resonance in Hz, as a first guess."""
     f1, f2 = ((1.0 + sign * settings.assumed_apart) * resonance for sign in (-1.0, 1.0))
     zeta, e = settings.assumed_damping, settings.assumed_restitution
@@ -337,15 +336,15 @@ def record_variables(channels: Channels, frequency: NDArray[np.float64]) -> dict
 
 
 def sweep_direction(frequency: NDArray[np.float64]) -> str:
-    """Return in which direction the frequency of a sweep goes: up, down, or up and down."""
+    """Return a word for the direction of a sweep: up, down, or up and down."""
     covered = (frequency[-1] - frequency[0]) / max(float(np.ptp(frequency)), 1e-9)
     if abs(covered) < 0.5:
         return "up and down"
     return "up" if covered > 0.0 else "down"
 
 
-def stated_hypotheses(results: Results, verdict: str) -> NDArray[np.bool_]:
-    """Return of each hypothesis whether its numbers are stated: it describes a decided record."""
+def is_hypothesis_stated(results: Results, verdict: str) -> NDArray[np.bool_]:
+    """Return a mask of the hypotheses whose numbers are stated: those of a decided record."""
     count, settings = len(results.job.sound), results.job.data.settings
     sound, parted = results.misfit[:count], results.misfit[count:]
     most = min(settings.delaminated, float(sound.min()) / settings.ratio)
@@ -360,24 +359,25 @@ def stated_hypotheses(results: Results, verdict: str) -> NDArray[np.bool_]:
 @lru_cache(maxsize=4)
 def record_findings(data: RecordData, guess: Structure, is_guessed: bool) -> Findings:
     """Collect the quantities that the decision rule needs from a record."""
-    evidence, channels, even = cached_evidence(data), cached_channels(data), bonded_even(data)
+    evidence, channels = cached_evidence(data), cached_channels(data)
+    even = cached_even_orders(data)
     shut = SoundStructure.from_structure(guess).f
-    opening = smallest_openings(evidence, guess.m1, guess.m2)
+    opening = smallest_visible_openings(evidence, guess.m1, guess.m2)
     observed = evidence.frequency[np.isfinite(opening)]
-    response = (np.abs(evidence.measured[:, 0]) / evidence.level).max(axis=0)
+    response = (np.abs(evidence.measured_orders[:, 0]) / evidence.level).max(axis=0)
     low, high = sorted((guess.f1, guess.f2))
     return Findings(
-        excess=even.excess,
-        order2=even.largest,
-        apart=faces_apart(data),
-        strikes=strikes(channels, shut if is_guessed else math.nan),
-        sensors=len(evidence.masses),
+        excess=even.largest_excess,
+        order2=even.ratio_at_largest_excess,
+        apart=cached_face_difference(data),
+        strikes=measure_strikes(channels, shut if is_guessed else math.nan),
+        sensors=len(evidence.sensor_masses),
         low=float(evidence.level.min()),
         high=float(evidence.level.max()),
         first=float(observed.min()),
         last=float(observed.max()),
         smallest=float(np.nanmax(opening)),
-        hidden=float(np.nanmax(np.fmin.reduce(thresholds(evidence), axis=0))),
+        hidden=float(np.nanmax(np.fmin.reduce(order_2_thresholds(evidence), axis=0))),
         clipped=max(clipped_share(row) for row in channels.values),
         end_response=float(max(response[0], response[-1]) / response.max()),
         resonance=evidence.resonance,

@@ -31,7 +31,7 @@ class DriveSigns(NamedTuple):
     extra_power: float
 
 
-def signs_against_sound(run: xr.Dataset, sound: xr.Dataset) -> tuple[DriveSigns, DriveSigns]:
+def signs_and_errors(run: xr.Dataset, sound: xr.Dataset) -> tuple[DriveSigns, DriveSigns]:
     """Compute the signs of a run against that of the sound beam, and their errors."""
     first, second = jump_voltage(run), jump_voltage(sound)
     fall = 1.0 - first / second
@@ -39,7 +39,7 @@ def signs_against_sound(run: xr.Dataset, sound: xr.Dataset) -> tuple[DriveSigns,
         abs(float(one.jump_lag.sel(jump="up")) / voltage) if "jump_lag" in one else math.nan
         for one, voltage in ((run, first), (sound, second))
     )
-    power, scatter = extra_power(run, sound)
+    power, scatter = extra_power_and_error(run, sound)
     return DriveSigns(fall, power), DriveSigns(lag, scatter)
 
 
@@ -50,10 +50,10 @@ def jump_voltage(run: xr.Dataset) -> float:
     return abs(float(run.jumps.sel(jump="up")))
 
 
-def extra_power(run: xr.Dataset, sound: xr.Dataset) -> tuple[float, float]:
+def extra_power_and_error(run: xr.Dataset, sound: xr.Dataset) -> tuple[float, float]:
     """Return the extra power relative to the sound beam at equal speeds, and its standard error."""
-    speeds, powers = power_below_jump(run)
-    other_speeds, other_powers = power_below_jump(sound)
+    speeds, powers = speeds_and_powers_below_jump(run)
+    other_speeds, other_powers = speeds_and_powers_below_jump(sound)
     if min(len(speeds), len(other_speeds)) < MIN_SPEEDS:
         return math.nan, math.nan
     low, high = max(speeds[0], other_speeds[0]), min(speeds[-1], other_speeds[-1])
@@ -69,7 +69,7 @@ def extra_power(run: xr.Dataset, sound: xr.Dataset) -> tuple[float, float]:
     return float(rest.mean()) / mean, error
 
 
-def power_below_jump(run: xr.Dataset) -> tuple[Floats, Floats]:
+def speeds_and_powers_below_jump(run: xr.Dataset) -> tuple[Floats, Floats]:
     """Return the sizes of the speeds up to the jump, ascending, and the motor's powers, in W."""
     time, speed, voltage, work = (run[name].values for name in REQUIRED_VARIABLES)
     if not len(time) > 1:

@@ -27,86 +27,87 @@ class EvenOrders:
     apart: Floats  # difference of two sensors' order 1 or 2 over its threshold; NaN with one sensor
 
     @property
-    def excess(self) -> float:
+    def largest_excess(self) -> float:
         """Largest ratio of order 2 over order 1, as a multiple of its threshold."""
         return float(np.nanmax(self.ratio / self.threshold))
 
     @property
-    def largest(self) -> float:
+    def ratio_at_largest_excess(self) -> float:
         """Ratio of order 2 over order 1 in the window where it exceeds its threshold most."""
         return float(self.ratio[np.nanargmax(self.ratio / self.threshold)])
 
     @property
     def is_order_2_seen(self) -> bool:
-        return self.excess > 1.0
+        return self.largest_excess > 1.0
 
     @property
     def is_opening_seen(self) -> bool:
         """Whether order 2 or the difference of two faces exceeds its threshold."""
-        return self.is_order_2_seen or self.moved_apart > 1.0
+        return self.is_order_2_seen or self.largest_sensor_difference > 1.0
 
     @property
-    def moved_apart(self) -> float:
+    def largest_sensor_difference(self) -> float:
         """Largest difference of two sensors over its threshold; 0 with one sensor."""
         return float(np.nanmax(self.apart)) if np.isfinite(self.apart).any() else 0.0
 
 
 def even_orders(evidence: Evidence, bonded: Complexes) -> EvenOrders:
     """Compute order 2 of a record beyond that of a bonded structure, and its threshold."""
-    power = average_over_windows(np.nan_to_num(np.abs(evidence.measured[:, 1] - bonded[:, 1]) ** 2))
-    size, threshold = size_of_order_1(evidence), thresholds(evidence)
-    excess = np.sqrt(np.maximum(power - average_over_windows(evidence.floor**2), 0.0)) / size
+    beyond = evidence.measured_orders[:, 1] - bonded[:, 1]
+    power = average_neighbours(np.nan_to_num(np.abs(beyond) ** 2))
+    size, threshold = rms_of_order_1(evidence), order_2_thresholds(evidence)
+    excess = np.sqrt(np.maximum(power - average_neighbours(evidence.floor**2), 0.0)) / size
     quiet = np.isnan(threshold)
     excess[quiet] = np.nan
     chosen = np.argmax(np.nan_to_num(excess / threshold), axis=0)
     take = (chosen, np.arange(len(chosen)))
-    return EvenOrders(excess[take], threshold[take], sensor_difference(evidence, threshold))
+    return EvenOrders(excess[take], threshold[take], scaled_sensor_difference(evidence, threshold))
 
 
-def thresholds(evidence: Evidence) -> Floats:
+def order_2_thresholds(evidence: Evidence) -> Floats:
     """Return order 2 over order 1 from which it counts, (sensors, windows); NaN if little moves."""
-    size, floor, least = size_of_order_1(evidence), evidence.floor, evidence.settings
+    size, floor, least = rms_of_order_1(evidence), evidence.floor, evidence.settings
     noise = least.order2_noise * evidence.noise[:, np.newaxis] / size
-    between = least.order2_floor * np.sqrt(average_over_windows(floor**2)) / size
+    between = least.order2_floor * np.sqrt(average_neighbours(floor**2)) / size
     found = np.maximum(np.maximum(noise, between), least.order2_ratio)
-    quiet = size < least.response * evidence.size.max(axis=1, keepdims=True)
+    quiet = size < least.response * evidence.order_1_size.max(axis=1, keepdims=True)
     return np.asarray(np.where(quiet, np.nan, found))
 
 
-def smallest_openings(evidence: Evidence, m1: float, m2: float) -> Floats:
+def smallest_visible_openings(evidence: Evidence, m1: float, m2: float) -> Floats:
     """Return the smallest opening that would be seen in each window, m; NaN where little moves."""
-    shares = np.array([(m2, m1)[mass] for mass in evidence.masses])[:, np.newaxis] / (m1 + m2)
-    order2 = thresholds(evidence) * size_of_order_1(evidence)
+    shares = np.array([(m2, m1)[mass] for mass in evidence.sensor_masses]) / (m1 + m2)
+    order2 = order_2_thresholds(evidence) * rms_of_order_1(evidence)
     moved = order2 / (2.0 * TURN * evidence.frequency) ** 2
-    return np.asarray(np.fmin.reduce(moved / (ORDER_2_OF_OPENING * shares), axis=0))
+    return np.asarray(np.fmin.reduce(moved / (ORDER_2_OF_OPENING * shares[:, None]), axis=0))
 
 
-def size_of_order_1(evidence: Evidence) -> Floats:
+def rms_of_order_1(evidence: Evidence) -> Floats:
     """Return the root mean square of order 1 over neighbouring windows, by sensor, m/s2."""
-    return np.sqrt(average_over_windows(np.abs(evidence.measured[:, 0]) ** 2))
+    return np.sqrt(average_neighbours(np.abs(evidence.measured_orders[:, 0]) ** 2))
 
 
-def average_over_windows(values: Floats) -> Floats:
+def average_neighbours(values: Floats) -> Floats:
     return np.stack([moving_average(row) for row in values])
 
 
-def sensor_difference(evidence: Evidence, threshold: Floats) -> Floats:
+def scaled_sensor_difference(evidence: Evidence, threshold: Floats) -> Floats:
     """Return the difference of two sensors over its threshold, the larger of orders 1 and 2."""
-    if len(evidence.measured) < 2:
+    if len(evidence.measured_orders) < 2:
         return np.full(threshold.shape[1], np.nan)
-    (one, other), least = evidence.measured, evidence.settings
+    (one, other), least = evidence.measured_orders, evidence.settings
     slope = -1j * TURN * evidence.frequency
-    base = evidence.base[:2]
+    base = evidence.base_orders[:2]
     basis = np.stack([other[0], slope * other[0], base[0]], axis=1)
     real = np.concatenate([basis.real, basis.imag])
     gain, delay, share = np.linalg.lstsq(
         real, np.concatenate([one[0].real, one[0].imag]), rcond=None
     )[0]
-    size, seen = size_of_order_1(evidence)[0], np.fmax.reduce(threshold, axis=0)
+    size, seen = rms_of_order_1(evidence)[0], np.fmax.reduce(threshold, axis=0)
     alike = (gain + np.outer((1.0, 2.0), slope) * delay) * other[:2] + share * base
     both = np.nan_to_num(one[:2] - alike)
-    first, second = np.sqrt(average_over_windows(np.abs(both) ** 2)) / size
-    power = average_over_windows(np.nan_to_num(np.abs(evidence.measured[:, 1])) ** 2)
+    first, second = np.sqrt(average_neighbours(np.abs(both) ** 2)) / size
+    power = average_neighbours(np.nan_to_num(np.abs(evidence.measured_orders[:, 1])) ** 2)
     order2 = np.sqrt(power).max(axis=0)
     limit = np.maximum(2.0**0.5 * seen, least.difference_order2 * order2 / size)
     return np.asarray(np.maximum(first / np.maximum(seen, least.difference), second / limit))

@@ -17,7 +17,7 @@ from ..laboratory.analysis.order_tracking import decimate, integrate_in_time
 from ..laboratory.pieces import Floats, Pieces
 from ..laboratory.sampled import Sampled
 from ..laboratory.sensors import PARTICIPATION
-from .misfit import clipped
+from .misfit import clip
 from .order_windows import (
     MIN_WINDOWS,
     ORDERS,
@@ -25,7 +25,7 @@ from .order_windows import (
     Complexes,
     OrderWindows,
     RecordOrders,
-    channel_orders,
+    compute_orders,
 )
 from .settings import SETTINGS, Settings
 
@@ -43,7 +43,7 @@ Participation = float | Mapping[str, float] | None  # as an argument: of all, of
 
 
 def checked_participation(given: Participation, sensors: Sequence[str]) -> tuple[float | None, ...]:
-    """Return each sensor's participation factor as given; None where it is to be fitted."""
+    """Return each sensor's participation factor; None where it is to be fitted."""
     if given is None:
         return (None,) * len(sensors)
     if not isinstance(given, Mapping):
@@ -82,37 +82,37 @@ class Evidence:
     def from_orders(
         cls,
         orders: RecordOrders,
-        kept: float = SAMPLES_PER_PERIOD,
+        samples_per_period: float = SAMPLES_PER_PERIOD,
         participation: tuple[float | None, ...] = (),
         settings: Settings = SETTINGS,
     ) -> Evidence:
         """Build the evidence from a whole record's orders: cut and decimate it where possible."""
         channels, highest = cut_to_resonance(orders)
-        thin = decimate(channels, highest, kept)
+        thin = decimate(channels, highest, samples_per_period)
         if thin is not orders.channels:
-            orders = channel_orders(thin)
+            orders = compute_orders(thin)
         rate = orders.channels.sample_rate
         pieces = Sampled(acceleration=tuple(orders.channels.box), sample_rate=rate).pieces()
         return cls(orders, pieces, participation, settings)
 
     def near_resonance(self) -> Evidence:
         """Return the part of the evidence around both resonances, for a coarse search."""
-        size = np.abs(self.measured[:, 0] - self.level) / self.frequency**2
+        size = np.abs(self.measured_orders[:, 0] - self.level) / self.frequency**2
         moving = self.frequency[np.unravel_index(np.argmax(size), size.shape)[1]]
-        low, high = (end([*self.peaks, moving]) for end in (min, max))
+        low, high = (end([*self.peak_frequencies, moving]) for end in (min, max))
         ratio = self.orders.windows.frequency
         inside = np.flatnonzero((ratio > COARSE_RANGE[0] * low) & (ratio < COARSE_RANGE[1] * high))
         parts, channels = self.orders.windows.parts, self.orders.channels
-        begin = parts[inside[0]].start - round((START_UP + 0.1) * self.rate)
+        begin = parts[inside[0]].start - round((START_UP + 0.1) * self.sample_rate)
         part = slice(max(begin, 0), parts[inside[-1]].stop)
-        if len(inside) < MIN_WINDOWS or part.stop - part.start > MAX_CUT_SHARE * self.samples:
+        if len(inside) < MIN_WINDOWS or part.stop - part.start > MAX_CUT_SHARE * self.sample_count:
             return self
         kept = np.flatnonzero([part.start <= p.start and p.stop <= part.stop for p in parts])
         nodes = self.pieces.nodes[part] - self.pieces.nodes[part.start]
         cubics = self.pieces.derivatives[part.start : part.stop - 1]
         pieces = replace(self.pieces, nodes=nodes, derivatives=cubics)
         orders = RecordOrders(
-            self.orders.windows.select_and_cut(kept, part),
+            self.orders.windows.cut_to_samples(kept, part),
             replace(channels, time=channels.time[part], values=channels.values[:, part]),
             self.orders.amplitude[:, :, kept],
             self.orders.floor[:, kept],
@@ -120,33 +120,33 @@ class Evidence:
         )
         return replace(self, orders=orders, pieces=pieces)
 
-    def at_windows(self, chosen: NDArray[np.bool_]) -> Evidence:
-        """Return the evidence with only some of the fitted windows."""
+    def select_windows(self, chosen: NDArray[np.bool_]) -> Evidence:
+        """Return the evidence with only some of the fitted windows, and the same resonance."""
         made = replace(self)
         made.__dict__["used_windows"] = self.used_windows[chosen]
         made.__dict__["resonance"] = self.resonance
         return made
 
     @cached_property
-    def sliding(self) -> Floats:
+    def velocity_sign_cubics(self) -> Floats:
         """Cubics of the sign of the measured velocity, relative to the base and smooth at zero."""
         channels = self.orders.channels
         moved = (channels.values[self.orders.rows] - channels.box).mean(axis=0)
-        speed = integrate_in_time(moved, self.rate, 0.5 * TURN * self.resonance)
-        slow = self.settings.slow * TURN * self.resonance * self.displacement
+        speed = integrate_in_time(moved, self.sample_rate, 0.5 * TURN * self.resonance)
+        slow = self.settings.slow * TURN * self.resonance * self.largest_displacement
         sign = speed / np.hypot(speed, slow)
-        return Sampled(acceleration=tuple(sign), sample_rate=self.rate).pieces().derivatives
+        return Sampled(acceleration=tuple(sign), sample_rate=self.sample_rate).pieces().derivatives
 
     @property
-    def rate(self) -> float:
+    def sample_rate(self) -> float:
         return self.orders.channels.sample_rate
 
     @property
-    def samples(self) -> int:
+    def sample_count(self) -> int:
         return len(self.orders.channels.time)
 
     @cached_property
-    def masses(self) -> tuple[int, ...]:
+    def sensor_masses(self) -> tuple[int, ...]:
         """Mass that each sensor is on, 0 or 1."""
         return tuple(SENSORS.index(name) for name in self.orders.sensors)
 
@@ -173,22 +173,22 @@ class Evidence:
         return self.orders.level[self.used_windows]
 
     @cached_property
-    def measured(self) -> Complexes:
+    def measured_orders(self) -> Complexes:
         """Measured orders 1, 2, 3 of the sensors, shape (sensors, 3, windows), m/s2."""
         numbers = [ORDERS.index(order) for order in FITTED_ORDERS]
         return self.orders.amplitude[self.orders.rows][:, numbers][:, :, self.used_windows]
 
     @cached_property
-    def size(self) -> Floats:
+    def order_1_size(self) -> Floats:
         """Largest amplitude of order 1 around each window, shape (sensors, windows), m/s2."""
-        size = np.abs(self.measured[:, 0])
+        size = np.abs(self.measured_orders[:, 0])
         padded = np.pad(size, ((0, 0), (2, 2)), mode="edge")  # two windows on each side
         return np.lib.stride_tricks.sliding_window_view(padded, 5, axis=1).max(axis=-1)
 
     @cached_property
     def noise(self) -> Floats:
         """Standard deviation of the orders' amplitudes by noise, shape (sensors,), m/s2."""
-        return np.maximum(self.orders.noise[self.orders.rows], 1e-9 * self.size.max())
+        return np.maximum(self.orders.noise[self.orders.rows], 1e-9 * self.order_1_size.max())
 
     @property
     def floor(self) -> Floats:
@@ -196,131 +196,132 @@ class Evidence:
         return self.orders.floor[self.orders.rows][:, self.used_windows]
 
     @cached_property
-    def error(self) -> Floats:
+    def standard_deviation(self) -> Floats:
         """Standard deviations (model error and noise), shape (sensors, 3, windows), m/s2."""
         floor = np.maximum(self.settings.irregular * self.floor, self.noise[:, None])
-        model = self.settings.model_error * self.size[:, None, :].repeat(3, axis=1)
+        model = self.settings.model_error * self.order_1_size[:, None, :].repeat(3, axis=1)
         return np.sqrt(floor[:, None, :] ** 2 + model**2)
 
     @cached_property
-    def base(self) -> Complexes:
+    def base_orders(self) -> Complexes:
         """Orders 1, 2, 3 of the base, shape (3, windows), m/s2."""
         return self.windows.amplitudes(self.orders.channels.box[np.newaxis])[0]
 
     @cached_property
-    def operator(self) -> csr_array:
-        """Sparse matrix from a displacement to its orders, see :meth:`orders_of_motion`."""
+    def orders_of_displacement(self) -> csr_array:
+        """Sparse matrix from a displacement to its orders, see :meth:`ideal_orders`."""
         from scipy.sparse import diags_array
 
-        read = 1.0 / np.sinc(np.outer(FITTED_ORDERS, self.frequency) / self.rate) ** 2
+        read = 1.0 / np.sinc(np.outer(FITTED_ORDERS, self.frequency) / self.sample_rate) ** 2
         weights = diags_array(read.repeat(2, axis=0).ravel())
         return (weights @ self.windows.displacement_operator()).tocsr()
 
     @cached_property
     def resonance(self) -> float:
         """Frequency at which the structure moves most for the base's amplitude, Hz."""
-        response = (np.abs(self.measured[:, 0]) / self.level).max(axis=0)
+        response = (np.abs(self.measured_orders[:, 0]) / self.level).max(axis=0)
         return float(self.frequency[np.argmax(response)])
 
     @cached_property
-    def peaks(self) -> tuple[float, ...]:
+    def peak_frequencies(self) -> tuple[float, ...]:
         """Frequency at which each sensor moves most for the base's amplitude, Hz."""
-        response = np.abs(self.measured[:, 0]) / self.level
+        response = np.abs(self.measured_orders[:, 0]) / self.level
         return tuple(self.frequency[np.argmax(response, axis=1)].tolist())
 
     @cached_property
-    def displacement(self) -> float:
+    def largest_displacement(self) -> float:
         """Largest amplitude of order 1 relative to the base, m, at the resonance."""
-        size = np.abs(self.measured[:, 0] - self.level)
+        size = np.abs(self.measured_orders[:, 0] - self.level)
         return float((size / (TURN * self.frequency) ** 2).max())
 
-    def orders_of_motion(self, motion: Floats) -> Complexes:
-        """Compute orders 1, 2, 3 that sensors read of a motion, shape (sensors, 3, windows)."""
-        chosen = [min(mass, len(motion) - 1) for mass in self.masses]
-        parts = {row: self.operator @ motion[row] for row in set(chosen)}
+    def ideal_orders(self, motion: Floats) -> Complexes:
+        """Compute orders 1, 2, 3 that ideal sensors read of a motion, (sensors, 3, windows)."""
+        chosen = [min(mass, len(motion) - 1) for mass in self.sensor_masses]
+        parts = {row: self.orders_of_displacement @ motion[row] for row in set(chosen)}
         rows = np.stack([parts[row] for row in chosen])
         found = rows.reshape(len(chosen), len(FITTED_ORDERS), 2, -1)
-        return found[:, :, 0] + 1j * found[:, :, 1] + self.base
+        return found[:, :, 0] + 1j * found[:, :, 1] + self.base_orders
 
-    def fitted_orders(self, motion: Floats) -> Complexes:
-        return self.corrected_for_sensors(self.orders_of_motion(motion))
+    def sensor_orders(self, motion: Floats) -> Complexes:
+        """Compute the same with the errors of sensors that come nearest to what was measured."""
+        return self.correct_for_sensors(self.ideal_orders(motion))
 
-    def corrected_for_sensors(self, computed: Complexes) -> Complexes:
+    def correct_for_sensors(self, computed: Complexes) -> Complexes:
         """Return computed orders as sensors read them: base + participation (motion - base)."""
         found = computed.copy()
         for row in range(len(found)):
-            participation, gain, delay = self.sensor_error(row, computed[row, 0])
+            participation, gain, delay = self.fit_sensor_errors(row, computed[row, 0])
             turn = TURN * np.outer(FITTED_ORDERS, self.frequency) * delay
-            moved = self.base + participation * (found[row] - self.base)
+            moved = self.base_orders + participation * (found[row] - self.base_orders)
             found[row] = gain * np.exp(-1j * turn) * moved
         return found
 
-    def sensor_error(self, row: int, computed: Complexes) -> tuple[float, float, float]:
+    def fit_sensor_errors(self, row: int, computed: Complexes) -> tuple[float, float, float]:
         """Fit a sensor's participation factor, gain and delay (s) to order 1, with a prior."""
         if not np.isfinite(computed).all():  # a motion without bounds
             return 1.0, 1.0, 0.0
-        target, base, allowed = self.first_order(row, computed), self.base[0], self.settings
-        participation = self.given_participation(row)
+        target, participation = self.order_1_to_match(row, computed), self.fixed_participation(row)
+        base, allowed = self.base_orders[0], self.settings
         if participation is None:
-            gain, _, more = self.sensor_solution(row, computed, target)
+            gain, _, more = self.sensor_deviations(row, computed, target)
             more *= allowed.participation_deviation
             participation = 1.0 + more / (1.0 + allowed.gain_deviation * gain)
             # 1.57 at the tip of a uniform cantilever, 0.34 at 0.4 of it
             participation = float(np.clip(participation, 0.2, 1.7))
         read = base + participation * (computed - base)
-        gain, delay = self.sensor_solution(row, read, target, 2)
+        gain, delay = self.sensor_deviations(row, read, target, 2)
         most, latest = allowed.gain_error, allowed.delay
-        gain = 1.0 + clipped(allowed.gain_deviation * gain, (-most, most))
-        return participation, gain, clipped(allowed.delay_deviation * delay, (-latest, latest))
+        gain = 1.0 + clip(allowed.gain_deviation * gain, (-most, most))
+        return participation, gain, clip(allowed.delay_deviation * delay, (-latest, latest))
 
-    def sensor_solution(
+    def sensor_deviations(
         self, row: int, computed: Complexes, target: Complexes, count: int = 3
     ) -> Floats:
         """Return a sensor's gain, delay and participation in their deviations, by least squares."""
-        columns = self.sensor_columns(row, computed)[:count]
-        missed = (target - computed) / self.error[row, 0]
+        columns = self.order_1_changes_by_sensor(row, computed)[:count]
+        missed = (target - computed) / self.standard_deviation[row, 0]
         normal = (columns @ columns.conj().T).real
         normal += np.eye(count) * self.settings.prior_weight**2 * len(missed)  # nothing by chance
         return np.asarray(np.linalg.solve(normal, (columns.conj() @ missed).real))
 
-    def sensor_columns(self, row: int, computed: Complexes) -> Complexes:
+    def order_1_changes_by_sensor(self, row: int, computed: Complexes) -> Complexes:
         """Return the changes of order 1 by one deviation of gain, delay and participation."""
-        allowed, is_given = self.settings, self.given_participation(row) is not None
+        allowed, is_given = self.settings, self.fixed_participation(row) is not None
         late = -1j * allowed.delay_deviation * TURN * self.frequency * computed
         part = 0.0 if is_given else allowed.participation_deviation
-        changes = [allowed.gain_deviation * computed, late, part * (computed - self.base[0])]
-        return np.stack(changes) / self.error[row, 0]
+        changes = [allowed.gain_deviation * computed, late, part * (computed - self.base_orders[0])]
+        return np.stack(changes) / self.standard_deviation[row, 0]
 
-    def given_participation(self, row: int) -> float | None:
-        """Return a sensor's participation factor if it is not fitted, as given or 1; else None."""
+    def fixed_participation(self, row: int) -> float | None:
+        """Return a sensor's participation factor if it is not fitted, as stated or 1; else None."""
         given = self.participation[row] if self.participation else None
         return 1.0 if given is None and self.windows.is_tone else given
 
-    def participations(self, motion: Floats) -> Floats:
+    def fit_participations(self, motion: Floats) -> Floats:
         """Return the participation factors with which a motion is nearest, shape (sensors,)."""
-        first = self.orders_of_motion(motion)[:, 0]
-        return np.array([self.sensor_error(row, one)[0] for row, one in enumerate(first)])
+        first = self.ideal_orders(motion)[:, 0]
+        return np.array([self.fit_sensor_errors(row, one)[0] for row, one in enumerate(first)])
 
-    def first_order(self, row: int, computed: Complexes) -> Complexes:
+    def order_1_to_match(self, row: int, computed: Complexes) -> Complexes:
         """Return a sensor's measured order 1, with which the computed one is compared."""
-        return np.asarray(self.measured[row, 0])
+        return np.asarray(self.measured_orders[row, 0])
 
     def unbounded_residuals(self) -> Floats:
-        return np.full((len(self.masses), 4, len(self.used_windows)), UNBOUNDED_RESIDUAL)
+        return np.full((len(self.sensor_masses), 4, len(self.used_windows)), UNBOUNDED_RESIDUAL)
 
-    def residuals(self, motion: Floats) -> Floats:
+    def residuals_of_motion(self, motion: Floats) -> Floats:
         """Return the differences of a motion's orders from the measured ones, over the errors."""
         if not np.isfinite(motion).all():
             return self.unbounded_residuals()
-        return self.order_residuals(self.fitted_orders(motion))
+        return self.residuals_of_orders(self.sensor_orders(motion))
 
-    def order_residuals(self, computed: Complexes) -> Floats:
+    def residuals_of_orders(self, computed: Complexes) -> Floats:
         """Return computed less measured orders, over the errors; shape (sensors, 4, windows)."""
-        measured = np.stack([self.first_order(row, a) for row, a in enumerate(computed[:, 0])])
-        first = (computed[:, 0] - measured) / self.error[:, 0]
+        measured = np.stack([self.order_1_to_match(row, a) for row, a in enumerate(computed[:, 0])])
+        first = (computed[:, 0] - measured) / self.standard_deviation[:, 0]
         noise = self.noise[:, None, None]  # adds to both sizes alike
-        size, measured_size = np.abs(computed[:, 1:]), np.abs(self.measured[:, 1:])
-        higher = (np.sqrt(size**2 + noise**2) - measured_size) / self.error[:, 1:]
+        size, measured_size = np.abs(computed[:, 1:]), np.abs(self.measured_orders[:, 1:])
+        higher = (np.sqrt(size**2 + noise**2) - measured_size) / self.standard_deviation[:, 1:]
         raw = np.concatenate([first.real[:, None], first.imag[:, None], higher], axis=1)
         resolved = np.isfinite(measured_size[:, [0, 0, 0, 1]]) | (np.arange(4) < 2)[:, None]
         whole = np.where(np.isfinite(raw), raw, np.where(resolved, UNBOUNDED_RESIDUAL, 0.0))

@@ -23,16 +23,15 @@ from ..running.job import Table, refuse_unsupported_structure
 from ..running.options import Running
 from ..running.runner import compute_dataset
 from .curve_evidence import CurveData
-from .decision_rule import factor_outside
+from .decision_rule import DELAMINATED, factor_outside_range
 from .even_orders import EvenOrders, even_orders
 from .evidence import FITTED_ORDERS, Evidence, Participation, checked_participation
 from .hypotheses import FREE, REPORTED, Hypothesis
-from .order_windows import checked_channels
+from .order_windows import checked_base_and_faces
 from .search_job import RecordData, SearchJob, cached_orders
 from .settings import SETTINGS, Changes, Settings, checked_settings
 from .wiring import WiringSettings, wiring_notes
 
-DELAMINATED = "delaminated"
 EQUAL = 2.0  # standard errors of their difference within which two frequencies are equal
 # arguments for the hypotheses of `SOUND`, in their order
 SHORT_NAMES = ("bonded", "curved", "friction", "stop", "stop on the other side", "two modes")
@@ -133,12 +132,12 @@ def fit(
     >>> answer.value.sel(parameter=["f", "zeta"]).values.round(2).tolist()
     [47.0, 0.01]
     """
-    chosen = checked_free(free)
+    chosen = checked_free_parameters(free)
     kind = checked_word("hypothesis", hypothesis, (DELAMINATED, *SHORT_NAMES))
-    structure, changed = delaminated_guess(guess), checked_settings(settings)
+    structure, changed = checked_delaminated_guess(guess), checked_settings(settings)
     over = getattr(record, "dims", ())
     is_curve = "frequency" in over and "time" not in over
-    read = CurveData.from_curve if is_curve else checked_data
+    read = CurveData.from_curve if is_curve else checked_record_data
     data = read(record, structure, participation, changed)
     job = FitJob(
         name=f"fit_{checked_structure(guess).label()}",
@@ -149,11 +148,11 @@ def fit(
         delaminated=kind == DELAMINATED,
         kind=kind,
     )
-    check_tones(job)
+    check_tone_determines_fit(job)
     return compute_dataset(job, running, finder(running))
 
 
-def checked_free(free: Sequence[str]) -> tuple[str, ...]:
+def checked_free_parameters(free: Sequence[str]) -> tuple[str, ...]:
     """Check the names of the parameters to be fitted, and return them as a tuple."""
     names = checked_texts("free", free)
     expected = f"expected some of {', '.join(FREE)}"
@@ -165,14 +164,14 @@ def checked_free(free: Sequence[str]) -> tuple[str, ...]:
     return names
 
 
-def checked_data(
+def checked_record_data(
     record: xr.Dataset,
     guess: Structure | None = None,
     participation: Participation = None,
     settings: Settings = SETTINGS,
 ) -> RecordData:
-    """Check that a record's base moves as a sine, and return its channels for a job."""
-    channels = checked_channels(record)
+    """Return a record's data for a job; raise without a sine of the base, warn of another guess."""
+    channels = checked_base_and_faces(record)
     factors = checked_participation(participation, [one for one in channels.names if one != BOX])
     data = RecordData.from_channels(channels, factors, settings)
     try:
@@ -182,7 +181,7 @@ def checked_data(
         raise InputError("; ".join([str(error), *(note.text for note in notes)])) from None
     if guess is not None:
         low, high = sorted((guess.f1, guess.f2))
-        factor = factor_outside(resonance, low, high)
+        factor = factor_outside_range(resonance, low, high)
         if factor > settings.guess_factor:
             text = f"a factor of {factor:.3g} from the guess's {low:.3g} to {high:.3g} Hz"
             text = f"record: the response is largest at {resonance:.3g} Hz, {text}: are the times"
@@ -190,10 +189,10 @@ def checked_data(
     return data
 
 
-def check_tones(job: FitJob) -> None:
+def check_tone_determines_fit(job: FitJob) -> None:
     """Check that fewer numbers are fitted than a record of one tone has: three orders a sensor."""
     evidence, hypothesis = job.evidence, job.hypotheses[-1]
-    free, numbers = hypothesis.bounds(evidence), len(FITTED_ORDERS) * len(evidence.masses)
+    free, numbers = hypothesis.bounds(evidence), len(FITTED_ORDERS) * len(evidence.sensor_masses)
     is_level = np.ptp(evidence.level) < 0.1 * evidence.level.max()
     if evidence.windows.is_tone and is_level and len(free) >= numbers:
         text = f"one tone of {evidence.frequency.mean():.4g} Hz has {numbers} numbers"
@@ -201,8 +200,8 @@ def check_tones(job: FitJob) -> None:
         raise InputError(f"record: {text}, {len(free)} are fitted; {expected}")
 
 
-def delaminated_guess(guess: Structure) -> Structure:
-    """Check that both halves of the guess have a spring, and return it as delaminated."""
+def checked_delaminated_guess(guess: Structure) -> Structure:
+    """Return the guess as delaminated; raise unless both halves have a spring."""
     structure = checked_structure(guess)
     refuse_unsupported_structure("the diagnosis", structure)
     if not (structure.k1 > 0.0 and structure.k2 > 0.0):
@@ -224,18 +223,17 @@ class FitJob(SearchJob):
     def dataset(self, table: Table) -> xr.Dataset:
         results = Results.from_table(self, table)
         position = len(self.hypotheses) - 1
-        every, coordinates = results.comparison()
-        made = xr.Dataset(
-            {**every, **results.parameters(np.full(len(self.hypotheses), True))}, coordinates
-        ).isel(hypothesis=position)
+        every, coordinates = results.order_variables_and_coordinates()
+        every |= results.parameter_variables(np.full(len(self.hypotheses), True))
+        made = xr.Dataset(every, coordinates).isel(hypothesis=position)
         name = self.hypotheses[position].name
         named = made.drop_vars("hypothesis").dropna("parameter", how="all", subset=["asked"])
         if isinstance(self.data, CurveData):
             named = named.drop_vars("time")  # of the stepped sine that is played for it
         made = named.drop_vars("asked").assign(
-            correlation=results.correlation(position, list(named.parameter.values))
+            correlation=results.correlation_variable(position, list(named.parameter.values))
         )
-        whys = results.why_no_errors(position), *results.undetermined(position).values()
+        whys = results.why_no_errors(position), *results.why_undetermined(position).values()
         reason = "; ".join(filter(None, (results.reason(), *dict.fromkeys(whys))))
         return made.assign_attrs(
             analysis="fit", title=f"Fit: {name}", hypothesis=name, reason=reason
@@ -263,20 +261,20 @@ class Results:
         return cls(job, fitted=real + 1j * imaginary, **part)
 
     @property
-    def even(self) -> EvenOrders:
+    def even_orders(self) -> EvenOrders:
         """Order 2 of the record beyond that of the fitted bonded structure."""
         return even_orders(self.job.evidence, self.fitted[0])
 
     def reason(self) -> str:
         """Return a sentence that says why the halves' numbers are stated or not."""
-        even = self.even
-        size = f"order 2 is up to {100 * even.largest:.2g} % of order 1"
-        if not np.isfinite(self.job.evidence.measured[:, 1]).any():
+        even = self.even_orders
+        size = f"order 2 is up to {100 * even.ratio_at_largest_excess:.2g} % of order 1"
+        if not np.isfinite(self.job.evidence.measured_orders[:, 1]).any():
             if even.is_opening_seen:
                 return "the two faces move differently; order 2 is not in the curve"
             return "order 2 is not in the curve: order 1 of one face does not determine f1 and f2"
         if even.is_opening_seen:
-            return f"{size}, {even.excess:.2g} times the size from which it counts as seen"
+            return f"{size}, {even.largest_excess:.2g} times the size from which it counts as seen"
         return f"no opening is seen ({size}): f1 and f2 cannot be identified from this record"
 
     @property
@@ -292,18 +290,18 @@ class Results:
         text = f"the misfit {misfit:.3g} is above {limit:g}, the record is not described"
         return f"no standard errors: {text}"
 
-    def reported_values(self, position: int) -> tuple[dict[str, float], Floats]:
+    def reported_values_and_covariance(self, position: int) -> tuple[dict[str, float], Floats]:
         """Return the reported parameters of a hypothesis by name, and their covariance."""
         hypothesis, evidence = self.job.hypotheses[position], self.job.evidence
         names = list(hypothesis.bounds(evidence))
         here = dict(zip(names, self.values[position].tolist(), strict=False))
         slopes = reported_derivatives(hypothesis, here, evidence)
         covariance = self.covariance[position][: len(names), : len(names)]
-        return hypothesis.reported(here, evidence), slopes @ covariance @ slopes.T
+        return hypothesis.reported_parameters(here, evidence), slopes @ covariance @ slopes.T
 
-    def undetermined(self, position: int) -> dict[str, str]:
+    def why_undetermined(self, position: int) -> dict[str, str]:
         """Return which reported numbers of a hypothesis the record does not determine, and why."""
-        reported, covariance = self.reported_values(position)
+        reported, covariance = self.reported_values_and_covariance(position)
         at = {name: number for number, name in enumerate(reported)}
         error = np.sqrt(np.maximum(np.diag(covariance), 0.0))
         found, limit = {}, self.job.data.settings.undetermined
@@ -320,18 +318,19 @@ class Results:
                 found |= dict.fromkeys(("f1", "f2"), f"{text}, and their numbers say nothing")
         return found
 
-    def parameters(self, stated: NDArray[np.bool_]) -> dict[str, Variable]:
+    def parameter_variables(self, stated: NDArray[np.bool_]) -> dict[str, Variable]:
         """Return values and errors of the hypotheses that are ``stated``, NaN of the others."""
         shape = (len(self.values), len(REPORTED))
         value, error, asked = np.full((3, *shape), np.nan)
         for row in range(len(self.values)):
-            known, covariance = self.reported_values(row)
-            errors, unclear = np.sqrt(np.maximum(np.diag(covariance), 0.0)), self.undetermined(row)
+            known, covariance = self.reported_values_and_covariance(row)
+            errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+            unclear, is_open = self.why_undetermined(row), self.even_orders.is_opening_seen
             for (name, number), deviation in zip(known.items(), errors, strict=True):
                 column = list(REPORTED).index(name)
                 asked[row, column] = 1.0
-                is_held = name not in unclear and (self.even.is_opening_seen or name not in FREE)
-                if stated[row] and is_held:
+                is_known = name not in unclear and (is_open or name not in FREE)
+                if stated[row] and is_known:
                     value[row, column] = number
                     error[row, column] = deviation if self.is_described[row] else np.nan
         over = ("hypothesis", "parameter")
@@ -346,9 +345,9 @@ class Results:
             "asked": variable(over, asked, "1", "1 where the hypothesis has the parameter"),
         }
 
-    def correlation(self, position: int, names: list[str]) -> tuple[Any, ...]:
+    def correlation_variable(self, position: int, names: list[str]) -> tuple[Any, ...]:
         """Return the correlation matrix of the errors of a hypothesis's reported parameters."""
-        reported, covariance = self.reported_values(position)
+        reported, covariance = self.reported_values_and_covariance(position)
         size = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
         order = [list(reported).index(name) for name in names]
         known = (covariance / np.outer(size, size))[np.ix_(order, order)]
@@ -356,7 +355,7 @@ class Results:
             known = np.full_like(known, np.nan)
         return variable(("parameter", "other_parameter"), known, "1", "correlation of errors")
 
-    def comparison(self) -> tuple[dict[str, Variable], dict[str, Variable]]:
+    def order_variables_and_coordinates(self) -> tuple[dict[str, Variable], dict[str, Variable]]:
         """Return measured and fitted orders with the misfits, and their coordinates."""
         evidence = self.job.evidence
         floor = evidence.floor[:, None].repeat(len(FITTED_ORDERS), axis=1)
@@ -370,15 +369,16 @@ class Results:
             ),
             "minima": variable(minima, self.minima, "1", "misfits of the minima that differ"),
             "misfit_at": variable(windows, by_window, "1", "misfit in each window"),
-            "measured": variable(over, np.abs(evidence.measured), "m/s2", "amplitude of orders"),
+            "measured": variable(
+                over, np.abs(evidence.measured_orders), "m/s2", "amplitude of orders"
+            ),
             "floor": variable(over, floor, "m/s2", "amplitude between the orders"),
             "fitted": variable(fitted, np.abs(self.fitted), "m/s2", "amplitude of fitted orders"),
         }
         units, words = zip(*REPORTED.values(), strict=True)
+        names = [one.name for one in self.job.hypotheses]
         coordinates = {
-            "hypothesis": text_coordinate(
-                "hypothesis", [one.name for one in self.job.hypotheses], "hypothesis"
-            ),
+            "hypothesis": text_coordinate("hypothesis", names, "hypothesis"),
             "parameter": text_coordinate("parameter", list(REPORTED), "parameter"),
             "unit": text_coordinate("parameter", units, "unit of the parameter"),
             "meaning": text_coordinate("parameter", words, "meaning of the parameter"),
@@ -403,7 +403,7 @@ def reported_derivatives(
     for name, value in here.items():
         step = 1e-5 * max(abs(value), 0.1)
         moved = [{**here, name: value + sign * step} for sign in (1.0, -1.0)]
-        ends = [list(hypothesis.reported(one, evidence).values()) for one in moved]
+        ends = [list(hypothesis.reported_parameters(one, evidence).values()) for one in moved]
         columns.append((np.array(ends[0]) - np.array(ends[1])) / (2.0 * step))
     return np.stack(columns, axis=1)
 

@@ -15,7 +15,7 @@ from ..fmu import Player
 from ..laboratory.pieces import Floats
 from ..model import Structure
 from .evidence import Evidence
-from .opening import opening_force
+from .opening import unit_opening_force
 from .single_mass import SingleMass
 from .undamaged import SoundStructure
 
@@ -49,7 +49,6 @@ class Hypothesis(ABC):
 
     name: ClassVar[str]  # in messages and results
     is_rugged: ClassVar[bool] = False  # whether single impacts make the misfit uneven
-    alike: ClassVar[str] = ""  # what describes a delaminated record, where this is the best
 
     @abstractmethod
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
@@ -64,7 +63,7 @@ class Hypothesis(ABC):
         """Compute the motion of one or two masses relative to the measured base, m."""
 
     @abstractmethod
-    def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
+    def reported_parameters(self, values: Values, evidence: Evidence) -> dict[str, float]:
         """Return the fitted numbers as physical parameters in SI, by the names of ``REPORTED``."""
 
     def parameters(self, start: Values, evidence: Evidence) -> Parameters:
@@ -96,7 +95,6 @@ class Sound(Hypothesis):
         return {"f": (0.5 * f, 2.0 * f), "log_zeta": (low, high), **self.extra}
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """Return starts around the resonance with several damping ratios."""
         f, rest = evidence.resonance, dict.fromkeys(self.extra, 0.0)
         return [
             {"f": shift * f, "log_zeta": math.log(zeta), **rest}
@@ -108,13 +106,11 @@ class Sound(Hypothesis):
         return SingleMass(f=values["f"], zeta=math.exp(values["log_zeta"]))
 
     def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
-        """Compute the motion of the single mass; NaN from where it diverges."""
-        cubics, bound = evidence.pieces.derivatives, 30.0 * evidence.displacement
+        cubics, bound = evidence.pieces.derivatives, 30.0 * evidence.largest_displacement
         mass = self.single_mass(values, evidence)
-        return mass.displacements(cubics, 1.0 / evidence.rate, bound)[np.newaxis]
+        return mass.displacements(cubics, 1.0 / evidence.sample_rate, bound)[np.newaxis]
 
-    def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
-        """Return the parameters of the single mass by name."""
+    def reported_parameters(self, values: Values, evidence: Evidence) -> dict[str, float]:
         mass = self.single_mass(values, evidence)
         return {name: getattr(mass, name) for name in ("f", "zeta", *self.extra)}
 
@@ -129,7 +125,6 @@ class NonlinearSpring(Sound):
     """A bonded structure on a spring that hardens or softens, symmetrically or not."""
 
     name = "bonded, hardening or softening"
-    alike = "a spring that is not linear describes it"
     extra = {"square": (-1.0, 1.0), "cube": (-0.9, 20.0)}
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
@@ -143,7 +138,7 @@ class NonlinearSpring(Sound):
         return found
 
     def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
-        x = evidence.displacement
+        x = evidence.largest_displacement
         linear = super().single_mass(values, evidence)
         return replace(linear, square=values["square"] / x, cube=values["cube"] / x**2)
 
@@ -163,7 +158,7 @@ class DryFriction(Sound):
     def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
         """Build the single mass; its friction is relative to the base's median acceleration."""
         friction = values["friction"] * float(np.median(evidence.level))
-        slow = evidence.settings.slow * TURN * evidence.resonance * evidence.displacement
+        slow = evidence.settings.slow * TURN * evidence.resonance * evidence.largest_displacement
         return replace(super().single_mass(values, evidence), friction=friction, slow=slow)
 
 
@@ -171,7 +166,6 @@ class PositiveStop(Sound):
     """A bonded structure with a stop in the positive direction of the sensor."""
 
     name = "bonded, with a stop in the positive direction"
-    alike = "a breathing crack or a clamp with play describes it"
     extra = {"stop": (-0.8, 5.0), "position": (-1.0, 1.0)}
     side: ClassVar[float] = 1.0
 
@@ -187,7 +181,7 @@ class PositiveStop(Sound):
 
     def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
         linear = super().single_mass(values, evidence)
-        position = values["position"] * evidence.displacement
+        position = values["position"] * evidence.largest_displacement
         return replace(linear, stop=values["stop"], position=position, side=self.side)
 
 
@@ -202,37 +196,33 @@ class TwoModes(Sound):
     """A linear structure with a second mode in the sweep, such as torsion."""
 
     name = "bonded, with two modes"
-    alike = "two modes of a sound beam describe it"
     extra = {"apart": (-0.35, 0.35)}
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """Return starts with a second mode above and below."""
         every = super().starts(evidence)
         return [{**one, "apart": apart} for one in every for apart in (-0.12, -0.05, 0.05, 0.12)]
 
     def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
-        """Compute the sum of both modes at each sensor."""
         second = {**values, "f": values["f"] * math.exp(values["apart"])}
         first = super().displacements(values, evidence, player)[0]
         other = super().displacements(second, evidence, player)[0]
         found = np.tile(first, (2, 1))
-        for row, mass in enumerate(evidence.masses):
-            found[mass] += self.share(evidence, row, np.stack([first, other])) * other
+        for row, mass in enumerate(evidence.sensor_masses):
+            found[mass] += self.mode_ratio(evidence, row, np.stack([first, other])) * other
         return found
 
-    def share(self, evidence: Evidence, row: int, motions: Floats) -> float:
-        """Return the second mode's part over the first one's that is nearest to order 1."""
-        base = evidence.base[0]
-        modes = np.stack([evidence.orders_of_motion(one[np.newaxis])[row, 0] for one in motions])
-        measured = evidence.first_order(row, modes[0]) - base
-        columns = ((modes - base) / evidence.error[row, 0]).T
-        wanted = measured / evidence.error[row, 0]
+    def mode_ratio(self, evidence: Evidence, row: int, motions: Floats) -> float:
+        """Fit the second mode's amplitude over the first one's, at a sensor, to order 1."""
+        base = evidence.base_orders[0]
+        modes = np.stack([evidence.ideal_orders(one[np.newaxis])[row, 0] for one in motions])
+        measured = evidence.order_1_to_match(row, modes[0]) - base
+        columns = ((modes - base) / evidence.standard_deviation[row, 0]).T
+        wanted = measured / evidence.standard_deviation[row, 0]
         both = np.concatenate([columns.real, columns.imag])
         parts = np.linalg.lstsq(both, np.concatenate([wanted.real, wanted.imag]), rcond=None)[0]
         return float(np.clip(parts[1] / parts[0], -1.0, 1.0)) if parts[0] else 0.0
 
-    def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
-        """Return frequency and damping ratio of the first mode, and the second's frequency."""
+    def reported_parameters(self, values: Values, evidence: Evidence) -> dict[str, float]:
         return {"f": values["f"], "zeta": math.exp(values["log_zeta"]), "apart": values["apart"]}
 
 
@@ -271,7 +261,7 @@ class Delaminated(Hypothesis):
             "log_zeta1": math.log(zeta[0]),
             "log_zeta2": math.log(zeta[1]),
             "e": structure.e,
-            "clearance": getattr(structure, "clearance", 0.0) / evidence.displacement,
+            "clearance": getattr(structure, "clearance", 0.0) / evidence.largest_displacement,
         }
 
     def structure_from_values(self, values: Values, evidence: Evidence) -> Structure:
@@ -286,7 +276,7 @@ class Delaminated(Hypothesis):
             "zeta1": math.exp(values["log_zeta1"]),
             "zeta2": math.exp(values["log_zeta2"]),
             "e": min(max(values["e"], 0.0), 1.0),  # differences reach beyond the bounds
-            "clearance": values["clearance"] * evidence.displacement,
+            "clearance": values["clearance"] * evidence.largest_displacement,
         }
         return self.guess.replace(bonded=False, **{name: numbers[name] for name in self.free})
 
@@ -303,27 +293,25 @@ class Delaminated(Hypothesis):
         return {name: ends for name, (ends, of) in every.items() if of & set(self.free)}
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """Return starts over split, common frequency and restitution."""
         guess = self.values_from_structure(self.guess, evidence)
         return [
-            {**guess, "common": shift * common_at(split, evidence), "split": split, "e": e}
+            {**guess, "common": shift * common_frequency(split, evidence), "split": split, "e": e}
             for split in STARTING_SPLITS
             for shift in (0.96, 1.0, 1.04)
             for e in (0.35, 0.7)
         ]
 
-    def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
-        """Return the structure's parameters that are free, by name."""
+    def reported_parameters(self, values: Values, evidence: Evidence) -> dict[str, float]:
         structure = self.structure_from_values(values, evidence)
         return {name: float(structure.get(name)) for name in self.free}
 
     def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
-        """Compute the motion of both masses by the FMU."""
         assert player is not None
         player.start(self.structure_from_values(values, evidence))
         nodes, cubics = evidence.pieces.nodes, evidence.pieces.derivatives
         if friction := values.get("friction", 0.0) * float(np.median(evidence.level)):
-            cubics = cubics + friction * evidence.sliding  # on both masses alike, as inertia acts
+            # on both masses alike, as inertia acts
+            cubics = cubics + friction * evidence.velocity_sign_cubics
         return player.play(nodes, cubics, nodes, ("x1", "x2")).rows.T
 
 
@@ -344,38 +332,40 @@ class DelaminatedWithClearance(Delaminated):
         return {**super().bounds(evidence), **friction}
 
     def values_from_structure(self, structure: Structure, evidence: Evidence) -> dict[str, float]:
-        """Convert a structure to the numbers that are fitted, without friction."""
         return {**super().values_from_structure(structure, evidence), "friction": 0.0}
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
         """Return starts with pressed faces, gaps, and halves that move alone up to one."""
-        guess, alone = self.values_from_structure(self.guess, evidence), self.moving_alone(evidence)
-        moved = [{"common": common_at(one, evidence), "split": one} for one in STARTING_SPLITS]
+        guess = self.values_from_structure(self.guess, evidence)
+        moved = [{"common": common_frequency(s, evidence), "split": s} for s in STARTING_SPLITS]
+        moved += self.starts_with_halves_alone(evidence)
         gaps = (0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.4)
-        found = [{**guess, **one, "clearance": gap} for gap in gaps for one in (*moved, *alone)]
+        found = [{**guess, **one, "clearance": gap} for gap in gaps for one in moved]
         if self.onset:
             for split in STARTING_SPLITS:
-                found += self.pressed(evidence, {**guess, "split": split})
+                found += self.starts_with_pressed_faces(evidence, {**guess, "split": split})
         return found
 
-    def moving_alone(self, evidence: Evidence) -> list[dict[str, float]]:
-        """Return starts at which a sensor's resonance is that of the half it is on."""
-        m1, m2, peaks, found = self.guess.m1, self.guess.m2, evidence.peaks, []
+    def starts_with_halves_alone(self, evidence: Evidence) -> list[dict[str, float]]:
+        """Return parts of starts at which a sensor's resonance is that of the half it is on."""
+        m1, m2, peaks, found = self.guess.m1, self.guess.m2, evidence.peak_frequencies, []
         both = len(peaks) == 2
         for split in [math.log(peaks[1] / peaks[0])] if both else STARTING_SPLITS:
-            f1 = peaks[0] if evidence.masses[0] == 0 else peaks[0] * math.exp(-split)
+            f1 = peaks[0] if evidence.sensor_masses[0] == 0 else peaks[0] * math.exp(-split)
             common = f1 * math.sqrt((m1 + m2 * math.exp(2.0 * split)) / (m1 + m2))
             found += [{"common": part * common, "split": split} for part in (1.0, 0.94)]
         return found
 
-    def pressed(self, evidence: Evidence, guess: Values) -> list[dict[str, float]]:
+    def starts_with_pressed_faces(
+        self, evidence: Evidence, guess: Values
+    ) -> list[dict[str, float]]:
         """Return starts whose preload, in closed form, opens where order 2 begins."""
         assert self.onset is not None
         zeta = self.onset.log_zeta
         alike = {"common": self.onset.common, "log_zeta1": zeta, "log_zeta2": zeta}
         shut = self.structure_from_values({**guess, **alike}, evidence)
-        force = self.onset.level * float(opening_force(shut, self.onset.frequency))
-        closed = -force * (1.0 / shut.k1 + 1.0 / shut.k2) / evidence.displacement
+        force = self.onset.level * float(unit_opening_force(shut, self.onset.frequency))
+        closed = -force * (1.0 / shut.k1 + 1.0 / shut.k2) / evidence.largest_displacement
         return [
             {**guess, **alike, "clearance": part * closed, "friction": friction}
             for part in (1.0, 0.8, 0.6)
@@ -383,8 +373,8 @@ class DelaminatedWithClearance(Delaminated):
         ]
 
 
-def common_at(split: float, evidence: Evidence) -> float:
-    """Return the common frequency of halves that are this far apart, by the resonance."""
+def common_frequency(split: float, evidence: Evidence) -> float:
+    """Return the frequency of both halves glued together, Hz, from the resonance; ln(f2/f1)."""
     return evidence.resonance * math.sqrt(1.0 + 0.25 * split**2)
 
 

@@ -30,7 +30,7 @@ HIGH = slice(5, None)  # orders 6 to 12
 
 @dataclass(frozen=True)
 class TimingSettings:
-    """Thresholds of :meth:`Strikes.word`, and the lengths with which it is measured."""
+    """Thresholds of :meth:`Strikes.what_strikes`, and the lengths with which it is measured."""
 
     memory: float = 0.27  # of a period: samples that predict one
     periods: float = 10.0  # of a window
@@ -69,8 +69,9 @@ class TimingSettings:
     softer: float = -0.17  # from shut faces
     middle: float = 0.6  # share of the windows for the spread: one by itself is chance
     spread: float = 0.15  # of the place, over the stroke: stops and play make 0.07, gaps 0.28
-    # see `stiffnesses`: windows up to this factor from the loud ones' frequency, where no other
-    # mode moves the sensor; how many tell the beam at rest; weight of a participation of 1
+    # see `rest_frequency_and_stiffness`: windows up to this factor from the loud ones' frequency,
+    # where no other mode moves the sensor; how many tell the beam at rest; weight of a
+    # participation of 1
     near: float = 1.5
     quiet: int = 8
     prior: float = 1e-6
@@ -96,17 +97,17 @@ class Strikes:
     blow: float
     opposite: float  # correlation of what both sensors hear in the loudest bin; NaN with one
     order2: float  # over order 1
-    stiffens: float  # growth of the stiffness, over order 2: see `strikes_at`
+    stiffens: float  # growth of the stiffness, over order 2: see `strikes_of_sensor`
     place: float  # where it strikes, over the stroke: -1 or 1 at its ends
     spread: float  # of the place in the `middle` of the windows, over the stroke
     stiffness: float  # frequency over that of the faces shut; NaN where that is not known
 
-    def numbers(self) -> str:
-        """Format the quantities of the rule."""
+    def format_quantities(self) -> str:
+        """Format the quantities of the rule that are known, by their names."""
         known = ((name, value) for name, value in vars(self).items() if math.isfinite(value))
         return ", ".join(f"{name} {value:.3g}" for name, value in known)
 
-    def word(self, settings: TimingSettings = TIMING) -> str:
+    def what_strikes(self, settings: TimingSettings = TIMING) -> str:
         """Return what strikes.
 
         - "nothing heard" up to `faint`, and up to `rattles` unless the peaks' phases agree by
@@ -146,20 +147,21 @@ class Strikes:
         return next((word for word, holds in limits.items() if not holds), FACES)
 
 
-def strikes(
-    channels: Channels, shut: float = math.nan, settings: TimingSettings = TIMING
+def measure_strikes(
+    channels: Channels, shut_resonance: float = math.nan, settings: TimingSettings = TIMING
 ) -> Strikes:
-    """Measure what strikes at the sensor that hears most; ``shut``: resonance of shut faces, Hz."""
+    """Measure what strikes at the sensor that hears most; resonance of the shut faces in Hz."""
     rows = [row for row, name in enumerate(channels.names) if name != BOX]
-    every = (strikes_at(channels, [row, *(set(rows) - {row})], shut, settings) for row in rows)
+    orders = ([row, *(set(rows) - {row})] for row in rows)
+    every = (strikes_of_sensor(channels, rows, shut_resonance, settings) for rows in orders)
     return max(every, key=lambda one: one.heard)
 
 
-def strikes_at(
-    channels: Channels, rows: Sequence[int], shut: float, settings: TimingSettings
+def strikes_of_sensor(
+    channels: Channels, rows: Sequence[int], shut_resonance: float, settings: TimingSettings
 ) -> Strikes:
     """Measure what strikes at the first of these sensors, with the other one's blows."""
-    columns = np.array(list(timed_windows(channels, rows, settings))).T
+    columns = np.array(list(window_quantities(channels, rows, settings))).T
     heard, base, power, peak, moment, blow, second, opposite = columns[:-3].real
     motion, quiet = columns[-3:], heard <= 1.0
     size = abs(motion[2])
@@ -168,8 +170,8 @@ def strikes_at(
     loud = (power >= settings.loud * power[top]) & ~quiet
     loud[top] = True
     turned = np.exp(1j * peak[loud])
-    shut *= 1.0 - settings.known
-    rest, stiffness = stiffnesses(motion, loud, quiet, settings)
+    shut = shut_resonance * (1.0 - settings.known)
+    rest, stiffness = rest_frequency_and_stiffness(motion, loud, quiet, settings)
     grown = [
         float(np.median((stiffness / one**2 - 1.0)[loud] / second[loud])) for one in (rest, shut)
     ]
@@ -191,13 +193,13 @@ def strikes_at(
     )
 
 
-def stiffnesses(
+def rest_frequency_and_stiffness(
     motion: NDArray[Any],
     loud: NDArray[np.bool_],
     quiet: NDArray[np.bool_],
     settings: TimingSettings,
 ) -> tuple[float, Floats]:
-    """Return the frequency of the beam at rest and the squared one in each window, in Hz.
+    """Return the frequency of the beam at rest, Hz, and each window's stiffness over mass, Hz^2.
 
     ``motion`` has order 1 of the sensor's acceleration relative to the base, the base's, and the
     displacement. By whatever force F the beam is held, ``a + p b + F = 0`` holds with the
@@ -222,10 +224,10 @@ def stiffnesses(
     return math.sqrt(max(scale * rest, 1e-9)) / TURN, stiffness / TURN**2
 
 
-def timed_windows(
+def window_quantities(
     channels: Channels, rows: Sequence[int], settings: TimingSettings
 ) -> Iterator[tuple[complex, ...]]:
-    """Yield the quantities of each window, in the order in which :func:`strikes_at` reads them."""
+    """Yield the quantities of each window, in the order in which the caller above reads them."""
     phase = np.maximum.accumulate(phase_of_box(channels))
     marks = np.arange(phase[0] / TURN + EDGE, phase[-1] / TURN - EDGE, settings.periods)
     edges = np.searchsorted(phase, TURN * marks)
@@ -237,29 +239,33 @@ def timed_windows(
         order = max(4, round(settings.memory * samples))
         here, base, part = phase[begin:end], channels.box[begin:end], slice(begin, end)
         waves = np.cumprod(np.tile(np.exp(-1j * here), (len(ORDERS), 1)), axis=0)
-        size = amplitudes(moved[part], waves)
+        size = project_on_waves(moved[part], waves)
         # a displacement is opposite to its acceleration: the top of the stroke is at 0
         own = here + np.angle(-size[0])
         at_base, *errors = (
             prediction_error(one, order)
             for one in (base, *(channels.values[row, part] for row in rows))
         )
-        heard, power, peak, moment, opposite = timed_power(errors, own, settings)
-        base_heard = timed_power([at_base], own, settings)[0]
+        heard, power, peak, moment, opposite = power_over_phase(errors, own, settings)
+        base_heard = power_over_phase([at_base], own, settings)[0]
         high = np.abs(size[HIGH])[ORDERS[HIGH] < NYQUIST * samples]
         second = abs(size[1] / size[0])
         blow = float(np.median(high) / abs(size[1])) / math.sqrt(second) if len(high) else math.nan
         quantities = heard, base_heard, power, peak, moment, blow, second
-        motion = size[0], amplitudes(base, waves[:1])[0], amplitudes(stroke[part], waves[:1])[0]
+        motion = (
+            size[0],
+            project_on_waves(base, waves[:1])[0],
+            project_on_waves(stroke[part], waves[:1])[0],
+        )
         yield *quantities, opposite, *motion
 
 
-def amplitudes(signal: Floats, waves: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def project_on_waves(signal: Floats, waves: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """Return the complex amplitudes of a signal's orders, without threads."""
     return np.asarray(2.0 / len(signal) * np.einsum("ns,s", waves, signal - signal.mean()))
 
 
-def timed_power(
+def power_over_phase(
     errors: Sequence[Floats], phase: Floats, settings: TimingSettings
 ) -> tuple[float, float, float, float, float]:
     """Return the loudest bin's rise over noise, power, phase, moment, correlation of sensors."""

@@ -18,19 +18,19 @@ Bounds = Mapping[str, tuple[float, float]]
 SOFT_LIMIT = 3.0  # residuals above count by their size, not its square: a jump may be a window off
 
 
-def soft_squares(residuals: Floats) -> Floats:
+def soft_l1_loss(residuals: Floats) -> Floats:
     """Return the soft l1 loss: squares of small residuals, sizes of large ones."""
     return np.asarray(2.0 * SOFT_LIMIT**2 * (np.sqrt(1.0 + (residuals / SOFT_LIMIT) ** 2) - 1.0))
 
 
-def soft_weights(residuals: Floats) -> Floats:
+def soft_l1_weights(residuals: Floats) -> Floats:
     """Return the derivative of the soft l1 loss over that of the plain squares."""
     return np.asarray(1.0 / np.sqrt(1.0 + (residuals / SOFT_LIMIT) ** 2))
 
 
 def misfit(residuals: Floats) -> float:
     """Return the square root of the mean soft l1 loss of the residuals."""
-    return math.sqrt(float(np.mean(soft_squares(residuals))))
+    return math.sqrt(float(np.mean(soft_l1_loss(residuals))))
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class LinearModel:
     scatter: Floats
 
     @classmethod
-    def from_cloud(
+    def fit_to_cloud(
         cls,
         residuals: Callable[[Mapping[str, float]], Floats],
         bounds: Bounds,
@@ -54,7 +54,7 @@ class LinearModel:
         seed: int,
         points: int,
     ) -> LinearModel:
-        """Compute the residuals at a cloud of points, so many a number, and their regression."""
+        """Compute residuals at a cloud of ``points`` a fitted number, and their regression."""
         count = len(values)
         rng = np.random.default_rng([20_241, seed])
         sizes, axes = np.linalg.eigh(covariance)
@@ -80,7 +80,7 @@ class LinearModel:
     @property
     def weighted_slopes(self) -> Floats:
         """Slopes times the weights of the soft loss, one row a residual."""
-        weights = soft_weights(self.residuals)
+        weights = soft_l1_weights(self.residuals)
         return (self.slopes * weights[..., np.newaxis]).reshape(-1, self.slopes.shape[-1])
 
     @property
@@ -89,7 +89,7 @@ class LinearModel:
         return self.weighted_slopes.T @ self.slopes.reshape(-1, self.slopes.shape[-1])
 
     @property
-    def influence(self) -> Floats:
+    def minus_inverse_normal_matrix(self) -> Floats:
         """Matrix ``-(J'WJ)^-1``, from changes of ``J'W residuals`` to shifts of the minimum."""
         information = self.normal_matrix
         size = np.sqrt(np.maximum(np.diag(information), 1e-300))
@@ -99,7 +99,8 @@ class LinearModel:
     def cloud_covariance(self) -> Floats:
         """Return the covariance of a cloud over which the squares grow by 30 %."""
         squares = float(np.sum(self.residuals.ravel() ** 2))
-        return np.asarray(-self.influence * 0.3 * squares / len(self.influence))
+        inverse = -self.minus_inverse_normal_matrix
+        return np.asarray(inverse * 0.3 * squares / len(inverse))
 
     def damped_minima(self, bounds: Bounds, values: Mapping[str, float]) -> list[dict[str, float]]:
         """Return the model's minimum within the bounds, for each damping from none to much."""
@@ -109,9 +110,9 @@ class LinearModel:
         for damping in (0.0, 0.01, 0.1, 1.0):
             step = np.linalg.lstsq(information + damping * size, -slope, rcond=1e-12)[0]
             moved = zip(values.items(), step.tolist(), strict=True)
-            found.append({name: clipped(value + s, bounds[name]) for (name, value), s in moved})
+            found.append({name: clip(value + s, bounds[name]) for (name, value), s in moved})
         return found
 
 
-def clipped(value: float, bounds: tuple[float, float]) -> float:
+def clip(value: float, bounds: tuple[float, float]) -> float:
     return float(min(max(value, bounds[0]), bounds[1]))

@@ -45,10 +45,10 @@ class Search:
     def residuals(self, values: Mapping[str, float]) -> Floats:
         """Return the residuals of the motion with these numbers, shape (sensors, 4, windows)."""
         if self._last is None or self._last[0] != values:
-            self._last = dict(values), self.computed_residuals(values)
+            self._last = dict(values), self.compute_residuals(values)
         return self._last[1]
 
-    def computed_residuals(self, values: Mapping[str, float]) -> Floats:
+    def compute_residuals(self, values: Mapping[str, float]) -> Floats:
         """Compute the motion with these numbers and return its residuals, without the cache."""
         from ..errors import FmuError, InputError
 
@@ -57,9 +57,11 @@ class Search:
             motion = self.hypothesis.displacements(values, self.evidence, self.player)
         except (FmuError, InputError):  # numbers that the FMU refuses: nothing to be found there
             return self.evidence.unbounded_residuals()
-        return self.evidence.residuals(motion)
+        return self.evidence.residuals_of_motion(motion)
 
-    def derivatives(self, values: Mapping[str, float], bounds: Mapping[str, Any]) -> Floats:
+    def residual_derivatives(
+        self, values: Mapping[str, float], bounds: Mapping[str, Any]
+    ) -> Floats:
         """Differentiate the residuals by the numbers, shape (residuals, numbers)."""
         here = self.residuals(values).ravel()
         columns = []
@@ -71,14 +73,14 @@ class Search:
             columns.append((there - here) / step)
         return np.stack(columns, axis=1)
 
-    def minima(self, starts: Sequence[Mapping[str, float]]) -> list[Solution]:
-        """Go downhill from the best starts that differ; return the minima, the best first."""
+    def find_minima(self, starts: Sequence[Mapping[str, float]]) -> list[Solution]:
+        """Minimise from the best starts that differ; return the minima, the best first."""
         settings = self.evidence.settings
         count = settings.rugged_starts if self.hypothesis.is_rugged else settings.starts
         chosen = without_neighbours(self.rank_starts(starts))[:count]
-        return sorted((self.refine(one.values) for one in chosen), key=lambda one: one.misfit)
+        return sorted((self.minimise(one.values) for one in chosen), key=lambda one: one.misfit)
 
-    def refine(self, start: Mapping[str, float]) -> Solution:
+    def minimise(self, start: Mapping[str, float]) -> Solution:
         """Minimise the misfit of model and record from start parameters (SciPy's trf)."""
         from lmfit import Minimizer
 
@@ -92,7 +94,7 @@ class Search:
         ends = {"ftol": settings.tolerance, "xtol": settings.tolerance, "max_nfev": settings.steps}
         result = minimizer.minimize(
             method="least_squares",
-            Dfun=lambda parameters: self.derivatives(parameters.valuesdict(), bounds),
+            Dfun=lambda parameters: self.residual_derivatives(parameters.valuesdict(), bounds),
             **(scales | ends),
         )
         values = dict(result.params.valuesdict())
@@ -104,7 +106,7 @@ class Search:
         shape = np.diag([difference_step(self, name) ** 2 for name in start.values])
         bounds = self.hypothesis.bounds(self.evidence)
         for number in range(settings.rounds):
-            model = LinearModel.from_cloud(
+            model = LinearModel.fit_to_cloud(
                 self.residuals, bounds, here.values, size * shape, number, settings.points
             )
             best = self.rank_starts(model.damped_minima(bounds, here.values))[0]
@@ -135,7 +137,7 @@ def difference_step(search: Search, name: str) -> float:
 
 
 def with_distinct_misfits(solutions: Sequence[Solution], ratio: float) -> list[Solution]:
-    """Return the minima whose misfits differ, the best first."""
+    """Return the minima whose misfits differ by a ratio, the best first."""
     found: list[Solution] = []
     for one in sorted(solutions, key=lambda solution: solution.misfit):
         if not found or one.misfit > ratio * found[-1].misfit:

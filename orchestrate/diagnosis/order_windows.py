@@ -108,20 +108,17 @@ class OrderWindows:
         ]
         return vstack(blocks).tocsr()
 
-    def select_and_cut(self, windows: NDArray[np.intp], samples: slice) -> OrderWindows:
+    def cut_to_samples(self, windows: NDArray[np.intp], samples: slice) -> OrderWindows:
         """Return these windows, renumbered for a record that is cut to these samples."""
         some = self.select(windows, len(self.orders))
         parts = (slice(p.start - samples.start, p.stop - samples.start) for p in some.parts)
         return replace(some, parts=tuple(parts), samples=samples.stop - samples.start)
 
-    def amplitudes(self, values: Floats, later: float = 0.0) -> Complexes:
+    def amplitudes(self, values: Floats) -> Complexes:
         """Compute the complex amplitudes of channels, shape (channels, orders, windows)."""
         found = np.empty((len(values), len(self.orders), len(self)), dtype=complex)
         for number, (part, solution) in enumerate(zip(self.parts, self.solutions, strict=True)):
             found[:, :, number] = values[:, part] @ solution
-        if later:
-            turn = TURN * np.outer(self.orders, self.frequency) * later / self.sample_rate
-            found *= np.exp(-1j * turn)
         return found
 
 
@@ -136,7 +133,7 @@ class RecordOrders:
     floor: Floats
     noise: Floats  # floor in the quietest fifth of the windows, m/s2
 
-    def order(self, number: float, channel: str) -> Complexes:
+    def order_amplitudes(self, number: float, channel: str) -> Complexes:
         """Return the complex amplitudes of an order in a channel, m/s2, shape (windows,)."""
         row = self.channels.names.index(channel)
         return np.asarray(self.amplitude[row, ORDERS.index(number)])
@@ -154,7 +151,7 @@ class RecordOrders:
     @property
     def level(self) -> Floats:
         """Amplitude of the base's order 1, m/s2, shape (windows,)."""
-        return np.abs(self.order(1.0, BOX))
+        return np.abs(self.order_amplitudes(1.0, BOX))
 
     @property
     def resonance(self) -> float:
@@ -163,8 +160,8 @@ class RecordOrders:
         return float(self.windows.frequency[np.argmax(response)])
 
 
-def sensor_channels(record: xr.Dataset) -> Channels:
-    """Return the channels of a record, and refuse a simulation that no sensor has read."""
+def checked_sensor_channels(record: xr.Dataset) -> Channels:
+    """Return the channels of a record; raise of a simulation that no sensor has read."""
     impacts = record.sizes.get("impact", 0) if hasattr(record, "sizes") else 0
     if impacts and not {"acceleration1", "acceleration2"} & set(record):
         text = "expected what sensors read of it, orchestrate.measure(history, sensor)"
@@ -172,7 +169,7 @@ def sensor_channels(record: xr.Dataset) -> Channels:
     return Channels.from_record(record, (BOX,))
 
 
-def checked_channels(record: xr.Dataset) -> Channels:
+def checked_base_and_faces(record: xr.Dataset) -> Channels:
     """Check that a record has the base's acceleration and a face's, and return the channels."""
     if hasattr(record, "data_vars") and not {BOX} & set(record):
         excited = (
@@ -181,7 +178,7 @@ def checked_channels(record: xr.Dataset) -> Channels:
         text = f"no acceleration of the base, {excited}; a verdict needs it"
         test = "measure a swept sine of the base, with an accelerometer next to the clamp"
         raise InputError(f"record: {text}: {test}; orchestrate.signs does without")
-    channels = sensor_channels(record)
+    channels = checked_sensor_channels(record)
     if len(channels.names) < 2:
         text = "expected acceleration1, acceleration2 or both besides the base's"
         raise InputError(f"record: no acceleration of a face; {text}")
@@ -192,12 +189,14 @@ def checked_channels(record: xr.Dataset) -> Channels:
     return channels
 
 
-def channel_orders(channels: Channels) -> RecordOrders:
+def compute_orders(channels: Channels) -> RecordOrders:
     """Compute the orders of channels of a swept or stepped sine, and their floors."""
-    return assembled_orders(channels, *windows_with_order_2(channels, *sine_windows(channels)))
+    return orders_with_floors(
+        channels, *drop_windows_without_order_2(channels, *sine_windows_and_amplitudes(channels))
+    )
 
 
-def assembled_orders(
+def orders_with_floors(
     channels: Channels, windows: OrderWindows, amplitude: Complexes
 ) -> RecordOrders:
     """Return a record's orders in windows, with their floors."""
@@ -207,7 +206,7 @@ def assembled_orders(
     return RecordOrders(windows, channels, whole, floor, np.quantile(floor, 0.2, axis=1))
 
 
-def windows_with_order_2(
+def drop_windows_without_order_2(
     channels: Channels, windows: OrderWindows, amplitude: Complexes
 ) -> tuple[OrderWindows, Complexes]:
     """Drop the windows whose order 2 is above what the sampling rate resolves."""
@@ -234,7 +233,7 @@ def moving_average(values: Floats, width: int = 5) -> Floats:
 
 
 @lru_cache(maxsize=4)  # of a record, decimated for the evidence and for a coarse search
-def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
+def sine_windows_and_amplitudes(channels: Channels) -> tuple[OrderWindows, Complexes]:
     """Find the windows in which the base moves as a sine, and all channels' amplitudes in them."""
     phase = phase_of_box(channels)
     every = overlapping_windows(channels, phase)
@@ -245,7 +244,7 @@ def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
         lacking = f"no sine of moving frequency in {channels.duration:.4g} s"
         raise InputError(f"{channel_label(BOX)}: {lacking}; {text}")
     row = channels.names.index(BOX)
-    windows = assembled_windows(channels, usable)
+    windows = assemble_windows(channels, usable)
     amplitude = windows.amplitudes(channels.values)
     level = np.abs(amplitude[row, 0])
     pairs = zip(usable, amplitude[row].T, strict=True)
@@ -277,7 +276,7 @@ def overlapping_windows(channels: Channels, phase: Floats) -> list[Window]:
     return found
 
 
-def assembled_windows(channels: Channels, windows: list[Window]) -> OrderWindows:
+def assemble_windows(channels: Channels, windows: list[Window]) -> OrderWindows:
     """Collect single windows in one object, with their least-squares matrices."""
     box, rate = channels.box, channels.sample_rate
     return OrderWindows(
@@ -286,7 +285,7 @@ def assembled_windows(channels: Channels, windows: list[Window]) -> OrderWindows
         np.array([one.rate for one in windows]),
         (*ORDERS, *OFF_ORDERS),
         tuple(one.part for one in windows),
-        tuple(referred_to_base(box, one, least_squares_matrix(one, rate)) for one in windows),
+        tuple(refer_to_base(box, one, least_squares_matrix(one, rate)) for one in windows),
         rate,
         len(channels.time),
     )
@@ -320,7 +319,7 @@ def waves_of_orders(phase: Floats) -> Complexes:
     return np.stack([first, second, third, half, first * off, second * off, third * off.conj()])
 
 
-def referred_to_base(box: Floats, one: Window, solution: Complexes) -> Complexes:
+def refer_to_base(box: Floats, one: Window, solution: Complexes) -> Complexes:
     """Refer the phases of a window's matrix to the base's own order 1."""
     shift = np.angle(solution[0] @ box[one.part])
     turn = np.exp(-1j * np.array([*ORDERS, *OFF_ORDERS]) * shift)
@@ -340,7 +339,7 @@ def split_sweeps(record: xr.Dataset) -> list[xr.Dataset]:
     - A sweep ends where the base has no sine for a second, or its frequency jumps by a fifth.
     - What lasts less than 2 s or covers less than a tenth of its frequency is no sweep.
     """
-    windows = sine_windows(sensor_channels(record))[0]
+    windows = sine_windows_and_amplitudes(checked_sensor_channels(record))[0]
     frequency, time = windows.frequency, windows.time
     jumps = np.abs(np.diff(frequency)) > 0.2 * frequency[:-1]
     ends = np.flatnonzero(jumps | (np.diff(time) > 1.0)) + 1  # s without a sine

@@ -34,7 +34,7 @@ from ..running.runner import compute_dataset
 from .decision_rule import DELAMINATED, NOT_DESCRIBED, NOT_SEEN, UNDECIDED, Beam
 from .detect import record_findings
 from .impact_timing import TIMING
-from .opening import largest_opening_force, sweep_rate
+from .opening import largest_unit_opening_force, max_steady_sweep_rate
 from .search_job import RecordData
 from .undamaged import SoundStructure
 
@@ -136,42 +136,45 @@ def plan_test(
     if structure.bonded:
         raise InputError("structure: bonded; expected a guess of the delaminated one")
     sound = SoundStructure.from_structure(structure)
-    frequencies = usual_ends(structure) if frequencies is None else frequencies
-    first, *_, last = checked_frequencies(frequencies).tolist()
+    frequencies = default_sweep_range(structure) if frequencies is None else frequencies
+    first, *_, last = checked_ascending_frequencies(frequencies).tolist()
     if levels is not None and g is not None:
         raise InputError("levels and g: expected one of them")
     if levels is None:
-        levels = GRAVITY * checked_positive("g", USUAL_LEVELS if g is None else g, "g")
-    wanted = np.unique(checked_positive("levels", levels, "m/s2"))
+        levels = GRAVITY * checked_positive_array("g", USUAL_LEVELS if g is None else g, "g")
+    wanted = np.unique(checked_positive_array("levels", levels, "m/s2"))
     job = PlanJob(
         name=f"plan_{structure.label()}",
         structure=structure,
-        sensors=checked_sensors(usual_sensor(last) if sensor is None else sensor, last),
+        sensors=checked_sensors(default_sensor(last) if sensor is None else sensor, last),
         levels=tuple(wanted.tolist()),
         first=first,
         last=last,
-        duration=slow_enough(sound.f, sound.zeta, first, last),
+        duration=sweep_duration(sound.f, sound.zeta, first, last),
         reserve=checked_range("reserve", reserve, low=1.0, high=1e3),
     )
     return compute_dataset(job, running, finder(running))
 
 
-def usual_ends(structure: Structure) -> tuple[float, float]:
+def default_sweep_range(structure: Structure) -> tuple[float, float]:
     """Return the frequencies in Hz between which a sweep passes the resonance."""
     f, halves = SoundStructure.from_structure(structure).f, (structure.f1, structure.f2)
     low, high = (1.0 - PLAN.beyond) * min(halves), (1.0 + PLAN.beyond) * max(halves)
     return min(PLAN.lowest * f, low), max(PLAN.highest * f, high)
 
 
-def usual_sensor(last: float, noise: float = USUAL_NOISE, range: float = math.inf) -> Sensor:
+def default_sensor(last: float, noise: float = USUAL_NOISE, range: float = math.inf) -> Sensor:
     """Return an accelerometer that samples a sweep up to ``last`` Hz as the rule needs it."""
     rate = PLAN.samples * last
     return Sensor(bandwidth=PLAN.bandwidth * rate, sample_rate=rate, noise=noise, range=range)
 
 
-def slow_enough(f: float, zeta: float, first: float, last: float) -> float:
+def sweep_duration(f: float, zeta: float, first: float, last: float) -> float:
     """Return the duration, s, of a sweep that shows a resonance and what strikes in it."""
-    seen, heard = sweep_rate(f, zeta), 2.0 * zeta * f**2 / (PLAN.windows * TIMING.periods)
+    seen, heard = (
+        max_steady_sweep_rate(f, zeta),
+        2.0 * zeta * f**2 / (PLAN.windows * TIMING.periods),
+    )
     steady, timed = ((last - first) / max(rate, 1e-9) for rate in (seen, heard))
     return min(max(timed, min(steady, PLAN.periods / f)), PLAN.longest)
 
@@ -197,17 +200,17 @@ class PlanJob(Job):
         self, fmus: Mapping[str, Path], items: Sequence[float], previous: Table | None
     ) -> Table:
         pair = self.structure, self.structure.as_bonded()
-        rows = [[self.rehearsal(one, level, fmus) for one in pair] for level in items]
+        rows = [[self.rehearse(one, level, fmus) for one in pair] for level in items]
         names = ("word", "heard", "opening", "peak")
         return dict(zip(names, np.moveaxis(np.array(rows), 2, 0), strict=True))
 
-    def rehearsal(
+    def rehearse(
         self, structure: Structure, level: float, fmus: Mapping[str, Path]
     ) -> tuple[float, float, float, float]:
-        """Measure and judge; return verdict, heard, largest gap and largest reading."""
+        """Measure and judge; return the verdict's number, heard, largest gap and reading."""
         # in the other structures everything grows with the level, but the noise
         at = level if structure.has_scale and not structure.bonded else 1.0
-        felt, gap = readings(self, structure, at, tuple(fmus.items()))
+        felt, gap = shake_and_measure(self, structure, at, tuple(fmus.items()))
         times = level / at
         rows = {
             name: own.add_noise_and_digitize(times * felt[name].values, list(CHANNELS).index(name))
@@ -226,23 +229,19 @@ class PlanJob(Job):
     def dataset(self, table: Table) -> xr.Dataset:
         words = [[WORDS[int(one)] for one in row] for row in table["word"]]
         right = np.array([row == [DELAMINATED, NOT_SEEN] for row in words])
+        guess_words, sound_words = zip(*words, strict=True)
         ranges = np.array([one.range for name, one in self.sensors if name != BOX]).min()
         cut = table["peak"].max(axis=1) >= ranges
         levels = np.array(self.levels)
         level, second, counts = recommended_levels(levels, right & ~cut, ~cut, self.reserve)
-        force = float(
-            largest_opening_force(self.structure, np.array([self.first, self.last])).max()
-        )
+        ends = np.array([self.first, self.last])
+        force = float(largest_unit_opening_force(self.structure, ends).max())
         text, rate = "rehearsed verdict on the", dict(self.sensors)[BOX].rate
         heard, over = table["heard"], "how far strikes rise over noise, of the"
         return xr.Dataset(
             {
-                "verdict": ("level", [row[0] for row in words], {"long_name": f"{text} guess"}),
-                "sound_verdict": (
-                    "level",
-                    [row[1] for row in words],
-                    {"long_name": f"{text} twin"},
-                ),
+                "verdict": ("level", list(guess_words), {"long_name": f"{text} guess"}),
+                "sound_verdict": ("level", list(sound_words), {"long_name": f"{text} twin"}),
                 "decides": yes_or_no("level", right, "whether both verdicts are right"),
                 "heard": variable("level", heard[:, 0], "1", f"{over} guess"),
                 "sound_heard": variable("level", heard[:, 1], "1", f"{over} sound twin"),
@@ -269,7 +268,7 @@ class PlanJob(Job):
 
 
 @lru_cache(maxsize=2)  # the structure and its twin
-def readings(
+def shake_and_measure(
     job: PlanJob, structure: Structure, level: float, fmus: tuple[tuple[str, Path], ...]
 ) -> tuple[xr.Dataset, float]:
     """Shake a structure; return what sensors without noise or limits read, and the largest gap."""
@@ -311,17 +310,17 @@ def recommended_levels(
 # -- what is asked --------------------------------------------------------------------------------
 
 
-def checked_frequencies(frequencies: ArrayLike) -> Floats:
-    f = checked_positive("frequencies", frequencies, "Hz")
+def checked_ascending_frequencies(frequencies: ArrayLike) -> Floats:
+    f = checked_positive_array("frequencies", frequencies, "Hz")
     if len(f) < 2 or not (np.diff(f) > 0.0).all():
         text = "expected two at least, ascending, in Hz"
         raise InputError(f"frequencies = {frequencies!r}: {text}")
     return f
 
 
-def checked_positive(name: str, given: ArrayLike, unit: str) -> Floats:
-    """Check that all numbers are finite and > 0, and return them as an array."""
-    return np.atleast_1d(np.asarray(checked_numbers(name, given, positive=f" > 0, in {unit}")))
+def checked_positive_array(name: str, values: ArrayLike, unit: str) -> Floats:
+    """Return numbers as an array; raise unless all are finite and > 0."""
+    return np.atleast_1d(np.asarray(checked_numbers(name, values, positive=f" > 0, in {unit}")))
 
 
 def checked_sensors(

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..laboratory.analysis.channels import BOX, Channels, divide_into_segments
+from ..laboratory.analysis.channels import BOX, Channels, WelchSegments, divide_into_segments
 from ..laboratory.analysis.frf import EXCITED
 from ..laboratory.analysis.order_tracking import Window, fit_orders_in_windows
 from ..laboratory.pieces import Floats
@@ -54,15 +54,15 @@ def response_signs(
 ) -> ResponseSigns:
     """Compute the signs that one record has by itself, without comparison."""
     own = signs_of_orders(channels, periods) if swept else signs_of_spectra(channels)
-    edge = default_band_edge(channels, own.highest) if high_band is None else high_band
-    moments = signs_of_moments(channels, edge)
-    loss, loss_floor = coherence_loss(channels, own.noise)
+    edge = default_high_band_edge(channels, own.highest) if high_band is None else high_band
+    moments = moment_signs_and_floors(channels, edge)
+    loss, loss_floor = coherence_loss_and_floor(channels, own.noise)
     values = {**own.values, **moments[0], "coherence_loss": loss}
     floors = {**own.floors, **moments[1], "coherence_loss": loss_floor}
     return replace(own, values=values, floors=floors)
 
 
-def default_band_edge(channels: Channels, highest: float) -> float:
+def default_high_band_edge(channels: Channels, highest: float) -> float:
     """Return where the high band begins, Hz; NaN if the sampling rate does not reach it."""
     edge = min(6.0 * highest, 0.3 * channels.sample_rate)
     return edge if edge >= 3.3 * highest else math.nan
@@ -87,29 +87,29 @@ def signs_of_orders(channels: Channels, periods: float) -> ResponseSigns:
     box, rows = amplitudes[0], amplitudes[1:]
     frequency = np.array([window.frequency for window in windows])
     power = {order: np.abs(rows[:, ORDERS.index(order)]) ** 2 for order in ORDERS}
-    sums = {order: mean_of_known(power[order]) for order in ORDERS}
+    sums = {order: nan_mean(power[order]) for order in ORDERS}
     off = np.fmin(*(sums[order] for order in OFF_ORDERS))
     values = {name: np.sqrt(sums[order] / sums[1.0]) for name, order in OF_ORDERS.items()}
     floors = {name: np.sqrt(off / sums[1.0]) for name in OF_ORDERS}
-    peaks = {name: frequency[window_of_largest(power[order])] for name, order in OF_ORDERS.items()}
+    peaks = {name: frequency[nan_argmax(power[order])] for name, order in OF_ORDERS.items()}
     total = np.nansum([power[order] for order in HARMONICS], axis=0)
-    values["distortion"] = np.sqrt(mean_of_known(total) / sums[1.0])
+    values["distortion"] = np.sqrt(nan_mean(total) / sums[1.0])
     floors["distortion"] = np.sqrt(len(HARMONICS) * off / sums[1.0])
-    peaks["distortion"] = frequency[window_of_largest(total)]
+    peaks["distortion"] = frequency[nan_argmax(total)]
     noise = noise_from_off_orders(windows, [power[order] for order in OFF_ORDERS])
     first = ORDERS.index(1.0)
     curves = curves_by_direction(windows, box[first], rows[:, first], floors["order_2"])
     return ResponseSigns(values, floors, peaks, curves, noise, float(frequency.max()))
 
 
-def mean_of_known(power: Floats) -> Floats:
+def nan_mean(power: Floats) -> Floats:
     """Average each row over the windows that have a value; NaN where none has."""
     known = np.isfinite(power)
     with np.errstate(invalid="ignore"):
         return np.asarray(np.where(known, power, 0.0).sum(axis=-1) / known.sum(axis=-1))
 
 
-def window_of_largest(power: Floats) -> NDArray[np.intp]:
+def nan_argmax(power: Floats) -> NDArray[np.intp]:
     return np.asarray(np.nan_to_num(power, nan=-1.0).argmax(axis=-1))
 
 
@@ -117,11 +117,11 @@ def noise_from_off_orders(windows: Sequence[Window], powers: Sequence[Floats]) -
     """Estimate the root mean square of white noise from the off-orders, m/s2."""
     # Hann's weights over n samples leave 6 ln(2) s^2/n in the median, which impacts hardly raise
     samples = np.array([window.part.stop - window.part.start for window in windows])
-    medians = [median_of_columns(power * samples) for power in powers]
+    medians = [median_of_finite_columns(power * samples) for power in powers]
     return np.asarray(np.sqrt(np.fmin.reduce(medians) / (6.0 * math.log(2.0))))
 
 
-def median_of_columns(values: Floats) -> Floats:
+def median_of_finite_columns(values: Floats) -> Floats:
     """Return the median of each row over the columns without NaN; NaN where there are none."""
     known = values[:, np.isfinite(values).all(axis=0)]
     return np.median(known, axis=-1) if known.size else np.full(len(values), np.nan)
@@ -155,11 +155,11 @@ def smooth_rate(rate: Floats) -> Floats:
 
 
 def signs_of_spectra(channels: Channels) -> ResponseSigns:
-    """Compute the response at the lines that the box excites; such a record has no orders."""
-    frequency, box, rows, cross = spectra(channels)
+    """Compute the response at the lines that the box excites, and the noise; without orders."""
+    frequency, box, rows, cross = compute_spectra(channels)
     excited = excited_lines(frequency, box)
     low, high = 0.36 * channels.sample_rate, 0.44 * channels.sample_rate
-    density = median_of_columns(rows[:, (frequency >= low) & (frequency <= high)])
+    density = median_of_finite_columns(rows[:, (frequency >= low) & (frequency <= high)])
     response = cross[:, excited] / box[excited]
     level, unknown = float(channels.box.std()), np.full(len(rows), np.nan)
     curve = Curve(0, level, frequency[excited], response, unknown)
@@ -169,15 +169,14 @@ def signs_of_spectra(channels: Channels) -> ResponseSigns:
     return ResponseSigns({}, {}, {}, curves, noise, highest)
 
 
-def spectra(channels: Channels) -> tuple[Floats, Floats, Floats, Floats]:
-    """Return frequencies, power densities of box and rows, and their cross densities (Welch)."""
-    from scipy.signal import csd, welch
+def welch_segments(channels: Channels) -> WelchSegments:
+    return divide_into_segments(channels, None, "hann", OVERLAP, fewest=2)
 
-    options = divide_into_segments(channels, None, "hann", OVERLAP, fewest=2).scipy_options
-    rows = channels.values[1:]
-    frequency, box = welch(channels.box, channels.sample_rate, **options)
-    own = welch(rows, channels.sample_rate, **options)[1]
-    return frequency, box, own, csd(channels.box, rows, channels.sample_rate, **options)[1]
+
+def compute_spectra(channels: Channels) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return frequencies, power densities of box and rows, and their cross densities (Welch)."""
+    drive, rows, rate = channels.box, channels.values[1:], channels.sample_rate
+    return welch_segments(channels).compute_spectra(drive, rows, rate)
 
 
 def excited_lines(frequency: Floats, box: Floats) -> NDArray[np.bool_]:
@@ -185,14 +184,14 @@ def excited_lines(frequency: Floats, box: Floats) -> NDArray[np.bool_]:
     return np.asarray((box >= EXCITED * box.max()) & (frequency > 0.0))
 
 
-def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
+def coherence_loss_and_floor(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
     """Return the mean of 1 less the coherence over the excited lines, and that of noise."""
     try:
-        segments = divide_into_segments(channels, None, "hann", OVERLAP, fewest=2)
+        segments = welch_segments(channels)
     except InputError:
         unknown = np.full(len(noise), np.nan)
         return unknown, unknown
-    frequency, box, rows, cross = spectra(channels)
+    frequency, box, rows, cross = compute_spectra(channels)
     excited = excited_lines(frequency, box)
     with np.errstate(invalid="ignore", divide="ignore"):
         power = rows[:, excited]
@@ -202,7 +201,7 @@ def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
     return 1.0 - coherence.mean(axis=-1), np.minimum(floor, 1.0)
 
 
-def signs_of_moments(
+def moment_signs_and_floors(
     channels: Channels, edge: float
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
     """Compute kurtosis and skewness, of all and of the high band; and those of Gaussian noise."""
@@ -229,7 +228,7 @@ def signs_of_moments(
 # -- differences between responses ----------------------------------------------------------------
 
 
-def sensor_differences(curves: Sequence[Curve], channels: int) -> tuple[Floats, Floats]:
+def sensor_difference_and_floor(curves: Sequence[Curve], channels: int) -> tuple[Floats, Floats]:
     """Compute the difference between two sensors, best complex gain taken out, and its floor."""
     rows = len(curves[0].response) if curves else 0
     if channels != 2 or not rows:
@@ -243,7 +242,7 @@ def sensor_differences(curves: Sequence[Curve], channels: int) -> tuple[Floats, 
     return np.repeat(rest, 2), np.repeat(floor, 2)
 
 
-def curve_difference(one: Curve, other: Curve) -> Floats:
+def relative_rms_difference(one: Curve, other: Curve) -> Floats:
     """Return the rms difference of two curves over that of the first, of each row."""
     low, high = other.frequency[0], other.frequency[-1]
     common = (one.frequency >= low) & (one.frequency <= high)
@@ -269,6 +268,6 @@ def level_and_direction_differences(
         else:
             continue
         first, second = sorted((one, other), key=lambda curve: (-curve.direction, curve.level))
-        value, floor = curve_difference(first, second), np.hypot(first.floor, second.floor)
+        value, floor = relative_rms_difference(first, second), np.hypot(first.floor, second.floor)
         best[name] = np.fmax(best[name][0], value), np.fmax(best[name][1], floor)
     return best

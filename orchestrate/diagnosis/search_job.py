@@ -23,9 +23,9 @@ from .evidence import Evidence
 from .hypotheses import SOUND, Delaminated, DelaminatedWithClearance, Hypothesis, Onset
 from .misfit import misfit
 from .multistart import Search, Solution, difference_step, with_distinct_misfits, without_neighbours
-from .order_windows import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, channel_orders
+from .order_windows import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, compute_orders
 from .settings import SETTINGS, Settings
-from .standard_errors import Estimate, estimate
+from .standard_errors import Estimate, estimate_with_errors
 
 MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 7, 8  # rows and columns of tables
 
@@ -54,9 +54,10 @@ class RecordData:
         begin = float(channels.time[0])
         return cls(channels.names, channels.sample_rate, begin, values, participation, settings)
 
-    def evidence(self, samples: float = SAMPLES_PER_PERIOD) -> Evidence:
-        """Return the evidence of the record, with some samples in a period at least."""
-        return Evidence.from_orders(cached_orders(self), samples, self.participation, self.settings)
+    def evidence(self, samples_per_period: float = SAMPLES_PER_PERIOD) -> Evidence:
+        """Return the evidence of the record, with so many samples in a period at least."""
+        orders = cached_orders(self)
+        return Evidence.from_orders(orders, samples_per_period, self.participation, self.settings)
 
     def coarse_evidence(self) -> Evidence:
         """Return the evidence near the resonance with fewer samples, for a coarse search."""
@@ -80,9 +81,8 @@ def cached_channels(data: RecordData) -> Channels:
 def cached_orders(data: RecordData) -> RecordOrders:
     """Return the orders of the whole record, thinned to what they need, once per process."""
     channels = cached_channels(data)
-    return channel_orders(
-        decimate(channels, bound_on_sweep_frequency(channels), SAMPLES_PER_PERIOD)
-    )
+    highest = bound_on_sweep_frequency(channels)
+    return compute_orders(decimate(channels, highest, SAMPLES_PER_PERIOD))
 
 
 @lru_cache(maxsize=2)
@@ -92,39 +92,39 @@ def cached_coarse_evidence(data: RecordData | CurveData) -> Evidence:
 
 
 @lru_cache(maxsize=8)
-def bonded_even(data: RecordData | CurveData) -> EvenOrders:
+def cached_even_orders(data: RecordData | CurveData) -> EvenOrders:
     """Return order 2 of a record beyond that of a bonded structure, by a short fit."""
     evidence = cached_evidence(data)
     search = Search(SOUND[0], evidence)
-    best = search.minima(SOUND[0].starts(evidence))[0]
+    best = search.find_minima(SOUND[0].starts(evidence))[0]
     motion = SOUND[0].displacements(best.values, evidence, None)
-    return even_orders(evidence, evidence.fitted_orders(motion))
+    return even_orders(evidence, evidence.sensor_orders(motion))
 
 
 @lru_cache(maxsize=8)
-def faces_apart(data: RecordData) -> float:
-    """Return how far two faces differ over the threshold; 0 where two modes of a sound beam do."""
-    even, modes = bonded_even(data), SOUND[-1]
-    if even.is_order_2_seen or even.moved_apart <= 1.0:
-        return even.moved_apart
+def cached_face_difference(data: RecordData) -> float:
+    """Return the faces' difference over its threshold; 0 if two modes of a sound beam make it."""
+    even, modes = cached_even_orders(data), SOUND[-1]
+    if even.is_order_2_seen or even.largest_sensor_difference <= 1.0:
+        return even.largest_sensor_difference
     coarse = Search(modes, cached_coarse_evidence(data))
-    nearest = coarse.minima(modes.starts(coarse.evidence))[0]
-    best = Search(modes, cached_evidence(data)).refine(nearest.values)
-    return 0.0 if best.misfit <= data.settings.sound else even.moved_apart
+    nearest = coarse.find_minima(modes.starts(coarse.evidence))[0]
+    best = Search(modes, cached_evidence(data)).minimise(nearest.values)
+    return 0.0 if best.misfit <= data.settings.sound else even.largest_sensor_difference
 
 
 @lru_cache(maxsize=2)
 def cached_onset(data: RecordData | CurveData) -> Onset | None:
     """Return where order 2 begins and the bonded fit of the windows without it, or None."""
     evidence = cached_evidence(data)
-    even = even_orders(evidence, np.zeros_like(evidence.measured))
+    even = even_orders(evidence, np.zeros_like(evidence.measured_orders))
     loud = even.ratio > even.threshold
     silent = ~loud & np.isfinite(even.ratio)
     if not loud.any() or silent.sum() < MIN_WINDOWS:
         return None
     first = int(np.argmax(loud))
-    search = Search(SOUND[0], evidence.at_windows(~loud))
-    best = search.minima(search.hypothesis.starts(evidence))[0].values
+    search = Search(SOUND[0], evidence.select_windows(~loud))
+    best = search.find_minima(search.hypothesis.starts(evidence))[0].values
     begin = float(evidence.frequency[first]), float(evidence.level[first])
     return Onset(*begin, best["f"], best["log_zeta"])
 
@@ -151,7 +151,7 @@ class SearchJob(Job):
     @property
     def is_worth_a_search(self) -> bool:
         """Whether two masses are searched: only of an opening their numbers are stated."""
-        return bonded_even(self.data).is_opening_seen
+        return cached_even_orders(self.data).is_opening_seen
 
     @property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
@@ -173,19 +173,19 @@ class SearchJob(Job):
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         with Player(fmus[OSCILLATOR]) as player:
             if items[0] >= 0:
-                return self.search(items[0], player)
+                return self.search_coarsely(items[0], player)
             assert previous is not None
-            return self.finish(previous, player)
+            return self.refine_all(previous, player)
 
-    def search(self, position: int, player: Player) -> Table:
+    def search_coarsely(self, position: int, player: Player) -> Table:
         hypothesis = self.hypotheses[position]
         search = Search(hypothesis, cached_coarse_evidence(self.data), player)
         starts = hypothesis.starts(self.evidence)
         worth = position < len(self.sound) or self.is_worth_a_search
-        found = search.minima(starts) if worth else search.rank_starts(starts[:1])
+        found = search.find_minima(starts) if worth else search.rank_starts(starts[:1])
         return solutions_table(position, found, search.evaluations)
 
-    def solutions(self, table: Table, position: int) -> list[Solution]:
+    def read_solutions(self, table: Table, position: int) -> list[Solution]:
         """Read the solutions of a hypothesis from a table, the best first."""
         hypothesis = self.hypotheses[position]
         names = list(hypothesis.bounds(self.evidence))
@@ -197,14 +197,15 @@ class SearchJob(Job):
 
     # -- the end of it ----------------------------------------------------------------------------
 
-    def finish(self, previous: Table, player: Player) -> Table:
+    def refine_all(self, previous: Table, player: Player) -> Table:
         """Refine the best solutions of each hypothesis, and compute all misfits and errors."""
         worth = self.delaminated and self.is_worth_a_search
         made: list[tuple[Search, list[Solution]]] = []
         for position in range(len(self.hypotheses)):
             search = Search(self.hypotheses[position], self.evidence, player)
-            starts = [one.values for one in self.solutions(previous, position)]
-            made.append((search, self.improved(search, starts, [one for _, one in made], worth)))
+            starts = [one.values for one in self.read_solutions(previous, position)]
+            minima = self.refine_minima(search, starts, [one for _, one in made], worth)
+            made.append((search, minima))
         count = len(self.sound)
         best = min(range(count), key=lambda position: made[position][1][0].misfit)
         if worth:  # what two masses are compared with is polished as they are
@@ -218,7 +219,7 @@ class SearchJob(Job):
             rows[-1]["end_evaluations"] += spent.sum()
         return {name: np.stack([part[name] for part in rows])[np.newaxis] for name in rows[0]}
 
-    def improved(
+    def refine_minima(
         self,
         search: Search,
         starts: list[Mapping[str, float]],
@@ -270,11 +271,11 @@ class SearchJob(Job):
         search, found = minima
         values, known = found[0].values, None
         if with_errors:
-            known = estimate(search, values)
+            known = estimate_with_errors(search, values)
             values = known.values
         motion = search.hypothesis.displacements(values, self.evidence, player)
-        computed = self.evidence.fitted_orders(motion)
-        residuals = self.evidence.order_residuals(computed)
+        computed = self.evidence.sensor_orders(motion)
+        residuals = self.evidence.residuals_of_orders(computed)
         numbers = np.full(MAX_NUMBERS, np.nan)
         numbers[: len(values)] = list(values.values())
         covariance = np.full((MAX_NUMBERS, MAX_NUMBERS), np.nan)
@@ -301,16 +302,16 @@ def participations_with_errors(
 ) -> Floats:
     """Return the sensors' participation factors and their standard errors, shape (2, sensors)."""
     evidence = search.evidence
-    here = evidence.participations(motion)
+    here = evidence.fit_participations(motion)
     if known is None:
         return np.stack([here, np.full(len(here), np.nan)])
-    free = np.array([evidence.given_participation(row) is None for row in range(len(here))])
+    free = np.array([evidence.fixed_participation(row) is None for row in range(len(here))])
     slopes = []
     for name, value in values.items():
         step = difference_step(search, name)
         moved = {**values, name: value + step}
         there = search.hypothesis.displacements(moved, evidence, search.player)
-        slopes.append((evidence.participations(there) - here) / step)
+        slopes.append((evidence.fit_participations(there) - here) / step)
     slope = np.stack(slopes, axis=1)
     variance = np.diag(slope @ known.covariance @ slope.T)
     variance = variance + (evidence.settings.model_error * here) ** 2

@@ -79,7 +79,7 @@ class Settings:
     hidden_share: float = 0.1
     noise_squares: float = 1.3
 
-    # -- the search: see `multistart.Search.minima` --
+    # -- the search: see `multistart.Search.find_minima` --
     # from which to go downhill: of a sound hypothesis, and of two masses
     starts: int = 2
     rugged_starts: int = 4

@@ -19,16 +19,16 @@ from ..model.arguments import checked_integer
 from ..model.ranges import checked_range
 from ..response.labels import flags, variable
 from ..running.job import refuse_unsupported_structure
-from .drive_signs import is_drive_run, signs_against_sound
+from .drive_signs import is_drive_run, signs_and_errors
 from .indicators import INDICATORS
-from .order_windows import sensor_channels
+from .order_windows import checked_sensor_channels
 from .response_signs import (
     MAX_EDGE,
     ResponseSigns,
     is_swept,
     level_and_direction_differences,
     response_signs,
-    sensor_differences,
+    sensor_difference_and_floor,
 )
 from .undamaged import SoundStructure
 
@@ -120,7 +120,7 @@ def signs(
     count = checked_integer("seeds", seeds, 1, 1000)
     every = [reference_channels(one) for one in (record, *others)]
     reference = every[0].box_label
-    names = checked_responses(every)
+    names = checked_response_names(every)
     edge = high_band
     if edge is not None:
         highest = MAX_EDGE * every[0].sample_rate
@@ -130,16 +130,16 @@ def signs(
     pairs = zip(every, swept, strict=True)
     own = [response_signs(channels, sine, length, edge) for channels, sine in pairs]
     noises = [one.noise if level is None else np.full(len(names), level) for one in own]
-    values, floors = all_signs(own, len(names))
+    values, floors = all_signs_and_floors(own, len(names))
     shown = np.full((count, len(values), len(names)), np.nan)
     sound = UNKNOWN
     if reference != RESPONSE:
-        sound = sound_structure(structure, own[0], every[0])
+        sound = choose_sound_structure(structure, own[0], every[0])
         made = [
-            response_signs(sound.records(channels, rms, range(count)), sine, length, edge)
+            response_signs(sound.simulate_channels(channels, rms, range(count)), sine, length, edge)
             for channels, rms, sine in zip(every, noises, swept, strict=True)
         ]
-        rows = np.stack(list(all_signs(made, len(names))[0].values()))
+        rows = np.stack(list(all_signs_and_floors(made, len(names))[0].values()))
         shown = rows.reshape(len(rows), count, len(names)).transpose(1, 0, 2)
     described = {
         "seeds": f"0 to {count - 1}",
@@ -158,7 +158,7 @@ def signs(
 def reference_channels(record: xr.Dataset) -> Channels:
     """Return a record's channels; the force, or the first response, stands for a base without."""
     if not isinstance(getattr(record, "data_vars", None), Mapping) or BOX in record:
-        return sensor_channels(record)
+        return checked_sensor_channels(record)
     channels = Channels.from_record(record)
     label = next((name for name in FORCES if name in record), RESPONSE)
     values = channels.values[0] if label == RESPONSE else np.asarray(record[label].values, float)
@@ -166,7 +166,7 @@ def reference_channels(record: xr.Dataset) -> Channels:
     return replace(channels, names=names, values=rows, box_label=label)
 
 
-def checked_responses(every: Sequence[Channels]) -> tuple[str, ...]:
+def checked_response_names(every: Sequence[Channels]) -> tuple[str, ...]:
     """Check that all records have the same responses, and return their names."""
     names = every[0].responses()[0]
     if not names:
@@ -178,10 +178,10 @@ def checked_responses(every: Sequence[Channels]) -> tuple[str, ...]:
     return names
 
 
-def sound_structure(
+def choose_sound_structure(
     structure: Structure | None, own: ResponseSigns, channels: Channels
 ) -> SoundStructure:
-    """Return the sound structure: the bonded guess, or the oscillator nearest to the record."""
+    """Return the bonded guess, or the oscillator fitted to the record."""
     refuse_unsupported_structure("signs", structure)
     force = channels.box_label in FORCES
     if structure is not None and not (force and own.curves):
@@ -192,11 +192,11 @@ def sound_structure(
     curve = own.curves[0]
     if structure is not None:
         bonded = SoundStructure.from_structure(structure)
-        return bonded.under_force(curve.frequency, curve.response)
-    return SoundStructure.nearest(curve.frequency, curve.response, channels, force)
+        return bonded.with_gains_under_force(curve.frequency, curve.response)
+    return SoundStructure.fit_to_record(curve.frequency, curve.response, channels, force)
 
 
-def all_signs(
+def all_signs_and_floors(
     own: Sequence[ResponseSigns], channels: int
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
     """Return values and noise floors of all signs, including those that compare records."""
@@ -209,7 +209,7 @@ def all_signs(
         values[name], floors[name] = value, floor
     unknown = np.full(rows, np.nan)
     if first.curves:
-        value, floor = sensor_differences(first.curves, channels)
+        value, floor = sensor_difference_and_floor(first.curves, channels)
         values["sensor_difference"], floors["sensor_difference"] = value, floor
     every = {name: values.get(name, unknown) for name in INDICATORS}
     return every, {name: floors.get(name, unknown) for name in INDICATORS}
@@ -244,7 +244,7 @@ def signs_dataset(
         {
             "value": variable(over, value, "1", "sign of the record"),
             "floor": variable(over, floor, "1", "its value by noise"),
-            "sound": variable(over, median_of_known(shown), "1", "of a sound structure, median"),
+            "sound": variable(over, median_over_seeds(shown), "1", "of a sound structure, median"),
             "sound_highest": variable(over, highest, "1", "of a sound structure, largest"),
             "exceeds": flags(over, exceeds, f"whether it is above {factor:g} times all", MEANINGS),
         },
@@ -257,7 +257,7 @@ def signs_dataset(
     )
 
 
-def median_of_known(shown: Floats) -> Floats:
+def median_over_seeds(shown: Floats) -> Floats:
     """Return the median over the seeds; NaN where one of them has no value."""
     known = np.isfinite(shown).all(axis=0)
     return np.asarray(np.where(known, np.median(np.nan_to_num(shown), axis=0), np.nan))
@@ -285,7 +285,7 @@ def signs_of_drive_run(run: xr.Dataset, others: Sequence[xr.Dataset], factor: fl
         raise InputError("other: expected the run of the sound beam on the same drive")
     values, floors = (
         {name: np.array([getattr(signs, name, np.nan)]) for name in INDICATORS}
-        for signs in signs_against_sound(run, others[0])
+        for signs in signs_and_errors(run, others[0])
     )
     shown = 0.0 * np.stack(list(floors.values()))[None]  # against itself; an unknown floor stays so
     title = str(run.attrs.get("title", "run"))

@@ -46,7 +46,7 @@ class SingleMass:
         return (*smooth, self.stop, self.position, self.side)
 
     def displacements(self, cubics: Floats, step: float, bound: float = 1e3) -> Floats:
-        """Return the relative displacement, m, at each cubic's beginning and at the end."""
+        """Return displacements, m, at the cubics' beginnings and the end; NaN beyond ``bound``."""
         if not (self.square or self.cube or self.friction or self.stop):
             return self.linear_displacements(cubics, step)
         stiffest = self.f * math.sqrt(1.0 + max(self.stop, 0.0))

@@ -38,7 +38,7 @@ from ..laboratory.pieces import Floats
 from ..laboratory.sampled import Sampled
 from .evidence import Evidence
 from .hypotheses import Hypothesis
-from .misfit import LinearModel, misfit, soft_squares
+from .misfit import LinearModel, misfit, soft_l1_loss
 from .multistart import Search, difference_step
 from .order_windows import ORDERS, RecordOrders
 from .settings import Settings
@@ -64,18 +64,18 @@ class Estimate:
     discrepancy: Floats
 
 
-def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
+def estimate_with_errors(search: Search, values: Mapping[str, float]) -> Estimate:
     """Return the numbers at the minimum of the smoothed misfit, with their covariances."""
     here, bounds = dict(values), search.hypothesis.bounds(search.evidence)
-    model = linear_model_around(search, here)
+    model = fit_linear_model_around(search, here)
     moved = model.damped_minima(bounds, here)[0]
     before, after = (misfit(search.residuals(one)) for one in (here, moved))
     allowed = 1.05 if search.hypothesis.is_rugged else 1.0  # more is a step too far
     chosen = moved if after <= allowed * before else here
-    lifted = chosen if search.evidence.has_floor else with_shared_damping(chosen)
+    lifted = chosen if search.evidence.has_floor else share_damping(chosen)
     if lifted == chosen:
         return estimate_with_covariances(search, chosen, model)
-    found = estimate_with_covariances(search, chosen, linear_model_around(search, lifted))
+    found = estimate_with_covariances(search, chosen, fit_linear_model_around(search, lifted))
     # what is linear in the damping ratios themselves, as errors of the logarithms that were fitted
     scale = np.array(
         [math.exp(lifted[n] - chosen[n]) if n.startswith("log_") else 1.0 for n in chosen]
@@ -83,18 +83,18 @@ def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
     return replace(found, covariance=found.covariance * np.outer(scale, scale))
 
 
-def linear_model_around(search: Search, values: Mapping[str, float]) -> LinearModel:
+def fit_linear_model_around(search: Search, values: Mapping[str, float]) -> LinearModel:
     """Fit a linear model to the residuals at a cloud of points around these values."""
     bounds = search.hypothesis.bounds(search.evidence)
     steps = np.diag([difference_step(search, name) ** 2 for name in values])
     shape = 0.1 * steps
     for seed in (0, 1):
-        model = LinearModel.from_cloud(search.residuals, bounds, values, shape, seed, POINTS)
+        model = LinearModel.fit_to_cloud(search.residuals, bounds, values, shape, seed, POINTS)
         shape = 0.3 * model.cloud_covariance()
     return model
 
 
-def with_shared_damping(values: Mapping[str, float]) -> dict[str, float]:
+def share_damping(values: Mapping[str, float]) -> dict[str, float]:
     """Raise a damping ratio that is nearly 0, and lower the other one by as much."""
     names = [name for name in ("log_zeta1", "log_zeta2") if name in values]
     ratios = np.exp([values[name] for name in names])
@@ -109,12 +109,12 @@ def estimate_with_covariances(
     search: Search, values: dict[str, float], model: LinearModel
 ) -> Estimate:
     """Compute the covariances of fitted numbers by noise, by blocks and by discrepancy."""
-    count, rows, influence = len(values), model.weighted_slopes, model.influence
+    count, rows, influence = len(values), model.weighted_slopes, model.minus_inverse_normal_matrix
     residuals = search.residuals(values)
     if search.evidence.has_floor:
-        changes = simulated_noise_changes(search, values)
+        changes = simulate_noise_changes(search, values)
     else:
-        changes = scatter_changes(residuals)
+        changes = simulate_scatter_changes(residuals)
     moved = np.stack([rows.T @ change.ravel() for change in changes])
     bumps = model.scatter @ rows
     by_noise = influence @ (moved.T @ moved / len(moved)) @ influence.T
@@ -150,29 +150,29 @@ def contact_covariance(values: Mapping[str, float], beyond: float, settings: Set
 
 def squares_beyond_noise(residuals: Floats, changes: list[Floats], factor: float) -> float:
     """Return the sum of squared residuals (soft loss) beyond what noise explains."""
-    by_noise = float(np.mean([soft_squares(change).sum() for change in changes]))
-    return max(float(soft_squares(residuals).sum()) - factor * by_noise, 0.0)
+    by_noise = float(np.mean([soft_l1_loss(change).sum() for change in changes]))
+    return max(float(soft_l1_loss(residuals).sum()) - factor * by_noise, 0.0)
 
 
-def simulated_noise_changes(search: Search, values: Mapping[str, float]) -> list[Floats]:
+def simulate_noise_changes(search: Search, values: Mapping[str, float]) -> list[Floats]:
     """Simulate noise of base and sensors; return the change of the residuals in each replicate."""
     evidence, rng = search.evidence, np.random.default_rng(SEED)
-    sizes, names = noise_of_samples(evidence.orders), evidence.orders.sensors
+    sizes, names = sample_noise_of_channels(evidence.orders), evidence.orders.sensors
     motion = search.hypothesis.displacements(values, evidence, search.player)
-    base = evidence.order_residuals(evidence.fitted_orders(motion))
+    base = evidence.residuals_of_orders(evidence.sensor_orders(motion))
     fit = search.hypothesis, values, search.player
     changes = []
-    for moved in motions_under_base_noise(evidence, fit, 16, rng):
+    for moved in simulate_motions_under_base_noise(evidence, fit, 16, rng):
         search.evaluations += 1
-        channels = [sizes[name] * rng.standard_normal(evidence.samples) for name in names]
+        channels = [sizes[name] * rng.standard_normal(evidence.sample_count) for name in names]
         read = evidence.windows.amplitudes(np.stack(channels))
         # noise of what is read counts the other way: as if the motion had moved by less
-        computed = evidence.corrected_for_sensors(evidence.orders_of_motion(moved) - read)
-        changes.append(evidence.order_residuals(computed) - base)
+        computed = evidence.correct_for_sensors(evidence.ideal_orders(moved) - read)
+        changes.append(evidence.residuals_of_orders(computed) - base)
     return changes
 
 
-def scatter_changes(residuals: Floats) -> list[Floats]:
+def simulate_scatter_changes(residuals: Floats) -> list[Floats]:
     """Simulate the scatter of a curve's points; return the change of the residuals each time."""
     differences = np.diff(residuals, n=2, axis=-1)
     size = np.sqrt(np.mean(differences**2, axis=-1, keepdims=True) / 6.0)
@@ -180,7 +180,7 @@ def scatter_changes(residuals: Floats) -> list[Floats]:
     return [size * rng.standard_normal(residuals.shape) for _ in range(100)]
 
 
-def motions_under_base_noise(
+def simulate_motions_under_base_noise(
     evidence: Evidence,
     fit: tuple[Hypothesis, Mapping[str, float], Player | None],
     count: int,
@@ -188,14 +188,14 @@ def motions_under_base_noise(
 ) -> Iterator[Floats]:
     """Yield motions of a fit while the base moves with more noise, of the size of its floor."""
     hypothesis, values, player = fit
-    size = noise_of_samples(evidence.orders)[BOX]
+    size = sample_noise_of_channels(evidence.orders)[BOX]
     for _ in range(count):
-        base = evidence.orders.channels.box + size * rng.standard_normal(evidence.samples)
-        pieces = Sampled(acceleration=tuple(base), sample_rate=evidence.rate).pieces()
+        base = evidence.orders.channels.box + size * rng.standard_normal(evidence.sample_count)
+        pieces = Sampled(acceleration=tuple(base), sample_rate=evidence.sample_rate).pieces()
         yield hypothesis.displacements(values, replace(evidence, pieces=pieces), player)
 
 
-def noise_of_samples(orders: RecordOrders) -> dict[str, float]:
+def sample_noise_of_channels(orders: RecordOrders) -> dict[str, float]:
     """Return the standard deviation of white noise that makes each channel's floor, m/s2."""
     squares = [np.sum(np.abs(s[:, len(ORDERS) :]) ** 2, axis=0) for s in orders.windows.solutions]
     share = math.sqrt(float(np.nanmean(squares)))

@@ -32,14 +32,14 @@ class SoundStructure:
         damping = (structure.d1 + structure.d2) / (2.0 * math.sqrt(k * m))
         return cls(math.sqrt(k / m) / TURN, min(damping, 0.999))
 
-    def under_force(self, frequency: Floats, response: Floats) -> SoundStructure:
+    def with_gains_under_force(self, frequency: Floats, response: Floats) -> SoundStructure:
         """Return the oscillator under a force, with gains that are nearest to responses."""
         model = transmissibility(frequency, self.f, self.zeta) - 1.0
         gains = (response @ model.conj()).real / (np.abs(model) ** 2).sum()
         return replace(self, gains=tuple(gains.tolist()))
 
     @classmethod
-    def nearest(
+    def fit_to_record(
         cls, frequency: Floats, response: Floats, channels: Channels, force: bool = False
     ) -> SoundStructure:
         """Fit the oscillator whose acceleration is nearest to a record's."""
@@ -48,23 +48,24 @@ class SoundStructure:
         peak = float(frequency[int(np.abs(response).max(axis=0).argmax())])
         measured = channels.responses()[1]
 
-        def made(logs: Floats) -> SoundStructure:
+        def from_logarithms(logs: Floats) -> SoundStructure:
             one = cls(*np.exp(logs).tolist())
-            return one.under_force(frequency, response) if force else one
+            return one.with_gains_under_force(frequency, response) if force else one
 
         def response_residuals(logs: Floats) -> Floats:
-            rest = (made(logs).response(frequency) - response).ravel()
+            rest = (from_logarithms(logs).response(frequency) - response).ravel()
             return np.concatenate([rest.real, rest.imag])
 
         def record_residuals(logs: Floats) -> Floats:
-            return np.asarray((made(logs).acceleration(channels) - measured).ravel())
+            return np.asarray((from_logarithms(logs).acceleration(channels) - measured).ravel())
 
         low, high = math.log(0.2 * frequency[0]), math.log(5.0 * frequency[-1])
         bounds = ([low, math.log(1e-4)], [high, math.log(0.9)])
         starts = [(math.log(peak), math.log(ratio)) for ratio in (0.003, 0.02, 0.1)]
         fits = [least_squares(response_residuals, start, bounds=bounds) for start in starts]
         best = min(fits, key=lambda fitted: float(fitted.cost))
-        return made(least_squares(record_residuals, best.x, bounds=bounds, x_scale=(0.01, 1.0)).x)
+        best = least_squares(record_residuals, best.x, bounds=bounds, x_scale=(0.01, 1.0))
+        return from_logarithms(best.x)
 
     def response(self, frequency: Floats) -> Floats:
         """Return the acceleration over that of the box, or over the force: a row for each gain."""
@@ -79,7 +80,9 @@ class SoundStructure:
         moved = np.asarray(lfilter(*filters, channels.box))
         return np.outer(self.gains, moved - channels.box) if self.gains else moved
 
-    def records(self, channels: Channels, noise: Floats, seeds: Sequence[int]) -> Channels:
+    def simulate_channels(
+        self, channels: Channels, noise: Floats, seeds: Sequence[int]
+    ) -> Channels:
         """Simulate what sensors on this structure would read: one row for each seed and channel."""
         steady = np.broadcast_to(self.acceleration(channels), (len(noise), len(channels.time)))
         rows = [channels.box]

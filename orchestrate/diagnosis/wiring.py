@@ -15,7 +15,7 @@ from ..laboratory.analysis.order_tracking import phase_of_box
 from ..laboratory.pieces import Floats
 from ..laboratory.record import SHORT_NAMES
 from ..laboratory.record_checks import PLATEAU, clipped_share
-from .order_windows import Complexes, RecordOrders, assembled_orders, sine_windows
+from .order_windows import Complexes, RecordOrders, orders_with_floors, sine_windows_and_amplitudes
 from .settings import SETTINGS
 
 
@@ -81,7 +81,7 @@ def wiring_notes(channels: Channels, settings: WiringSettings = WIRING) -> list[
       `samples` in a period of the resonance.
     """
     try:
-        orders = assembled_orders(channels, *sine_windows(channels))
+        orders = orders_with_floors(channels, *sine_windows_and_amplitudes(channels))
     except InputError:
         return list(notes_without_sine(channels, settings))
     found = (note for row in orders.rows for note in sensor_notes(orders, row, settings))
@@ -113,12 +113,12 @@ def notes_without_sine(channels: Channels, settings: WiringSettings) -> Iterator
             continue
         try:
             exchanged = replace(channels, values=values)
-            orders = assembled_orders(exchanged, *sine_windows(exchanged))
+            orders = orders_with_floors(exchanged, *sine_windows_and_amplitudes(exchanged))
         except InputError:
             is_face = is_resonant = False
         else:
-            is_face = is_heard(orders, row, settings)
-            size = np.abs(orders.order(1.0, BOX))
+            is_face = is_above_floor(orders, row, settings)
+            size = np.abs(orders.order_amplitudes(1.0, BOX))
             is_resonant = bool(size.max() > settings.peak * np.median(size))
         if spread[base] < settings.dead * spread[row]:
             yield Note("dead", f"the base has no sine and {face} moves: is the base's cable dead?")
@@ -138,22 +138,23 @@ def notes_without_sine(channels: Channels, settings: WiringSettings) -> Iterator
 def sensor_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> Iterator[Note]:
     """Yield notes on a sensor against the base, except on its samples."""
     name = SHORT_NAMES[orders.channels.names[row]]
-    response = orders.amplitude[row, 0] / orders.order(1.0, BOX)
+    response = orders.amplitude[row, 0] / orders.order_amplitudes(1.0, BOX)
     size = np.abs(response)
     usual = float(np.median(size))
     flat = size.max() < settings.peak * usual
-    if not is_heard(orders, row, settings) or (usual < settings.dead and flat):
+    if not is_above_floor(orders, row, settings) or (usual < settings.dead and flat):
         yield Note("dead", f"{name} moves {usual:.2g} times the base: is its cable dead?")
         return
-    sizes = np.abs(orders.order(1.0, BOX)), np.abs(orders.amplitude[row, 0])
+    sizes = np.abs(orders.order_amplitudes(1.0, BOX)), np.abs(orders.amplitude[row, 0])
     peak_of_base, peak = (float(one.max() / max(one[0], one[-1])) for one in sizes)
     if peak_of_base > settings.swapped * peak:
-        yield swapped_note(name)
+        text = f"{name} moves as a base and the base as {name}: swapped? exchange both in channels="
+        yield Note("swapped", text)
         return
     hertz = orders.windows.frequency
     made = {order: response * (1j * TURN * hertz) ** order for order in range(-2, 3)}
     level = orders.level
-    tried = {order: LowResponse.fitted(hertz, one, level, settings) for order, one in made.items()}
+    tried = {order: LowResponse.fit(hertz, one, level, settings) for order, one in made.items()}
     fits = {order: fit for order, fit in tried.items() if fit is not None}
     if (straight := fits.get(0)) is None:
         return
@@ -164,15 +165,10 @@ def sensor_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> It
         yield from straight.notes(name, settings)
 
 
-def is_heard(orders: RecordOrders, row: int, settings: WiringSettings) -> bool:
+def is_above_floor(orders: RecordOrders, row: int, settings: WiringSettings) -> bool:
     """Return whether a channel's order 1 is above the floor in most of the windows."""
     above = np.abs(orders.amplitude[row, 0]) > settings.floor * orders.floor[row]
     return bool(above.mean() > 0.5)
-
-
-def swapped_note(face: str) -> Note:
-    text = f"{face} moves as a base and the base as {face}: swapped? exchange both in channels="
-    return Note("swapped", text)
 
 
 def quantity_note(name: str, order: int, fit: LowResponse) -> Note:
@@ -195,7 +191,7 @@ class LowResponse:
     misfit: float  # root mean square, relative to the response
 
     @classmethod
-    def fitted(
+    def fit(
         cls, frequency: Floats, response: Complexes, level: Floats, settings: WiringSettings
     ) -> LowResponse | None:
         """Fit a response below its peak, weighted by the base's level; None in few windows."""

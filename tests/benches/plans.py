@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from orchestrate import Structure, SweptSine, measure, plan_test, shake
-from orchestrate.diagnosis.plan_test import usual_ends, usual_sensor
+from orchestrate.diagnosis.plan_test import default_sensor, default_sweep_range
 
 from .recipe import KINDS, OPENED, SPLIT, Conditions, draw_guess, draw_log_uniform
 from .verdicts import DELAMINATED, NO_OPENING, PLANNED, REFUSED, TWIN, verdict_on
@@ -25,7 +25,7 @@ def judged_plan(seed: int, kind: str, number: int) -> dict[str, Any]:
     structure = Structure.from_halves(**halves, e=rng.uniform(0.35, 0.85), clearance=own.clearance)
     near = own.clearance * rng.uniform(1.0 - OFF_CLEARANCE, 1.0 + OFF_CLEARANCE)
     guess = draw_guess(rng, own, OFF).replace(clearance=near)
-    every, answers = usual_sensor(usual_ends(guess)[1]), {}
+    every, answers = default_sensor(default_sweep_range(guess)[1]), {}
     for asked, names in SENSORS.items():
         sensors = dict.fromkeys(("box_acceleration", *names), every)
         plan = plan_test(guess, sensor=sensors, jobs=1, progress=False)

@@ -10,8 +10,8 @@ import xarray as xr
 
 import orchestrate
 from orchestrate import Drive, Excitation, InputError, Structure
-from orchestrate.diagnosis.fit import delaminated_guess
-from orchestrate.diagnosis.signs import sound_structure
+from orchestrate.diagnosis.fit import checked_delaminated_guess
+from orchestrate.diagnosis.signs import choose_sound_structure
 from orchestrate.fmu import MOTOR_SHAKER
 from orchestrate.weak_drive.drive_spectra import drive_spectra
 from orchestrate.weak_drive.ssp import write_ssp
@@ -239,8 +239,8 @@ UNKNOWING = {  # what does not know a wall or a stroke
     "drive_spectra": lambda s: orchestrate.drive_spectra(s, DRIVE),
     "drive_branch": lambda s: orchestrate.drive_branch(s, DRIVE),
     "plan_test": lambda s: orchestrate.plan_test(s),
-    "fit": delaminated_guess,
-    "detect": lambda s: sound_structure(s, None, None),
+    "fit": checked_delaminated_guess,
+    "detect": lambda s: choose_sound_structure(s, None, None),
 }
 KNOWING_STROKE = ("shaker", "cosimulate", "fit", "detect")
 

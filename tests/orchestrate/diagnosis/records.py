@@ -6,7 +6,7 @@ import numpy as np
 
 import orchestrate
 from orchestrate.diagnosis.evidence import Evidence
-from orchestrate.diagnosis.order_windows import channel_orders, checked_channels
+from orchestrate.diagnosis.order_windows import checked_base_and_faces, compute_orders
 
 HALVES = {"m1": 1.5, "m2": 1.2, "f1": 30.0, "f2": 38.0, "zeta1": 0.02, "zeta2": 0.02, "e": 0.5}
 BEAM = orchestrate.Structure.from_halves(**HALVES)
@@ -49,7 +49,7 @@ def guess(**changes):
 
 
 def record_orders(record):
-    return channel_orders(checked_channels(record))
+    return compute_orders(checked_base_and_faces(record))
 
 
 def record_evidence(record):

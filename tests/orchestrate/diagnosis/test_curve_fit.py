@@ -117,7 +117,7 @@ def test_some_points_of_a_curve_have_the_residuals_that_they_have_among_all(phas
     whole, chosen = CurveData.from_curve(curve, BEAM).evidence(), hertz < 33.0
     motion = Bonded().displacements({"f": 34.0, "log_zeta": -4.0}, whole, None)
     part, expected = (
-        one.order_residuals(one.orders_of_motion(motion))
-        for one in (whole.at_windows(chosen), whole)
+        one.residuals_of_orders(one.ideal_orders(motion))
+        for one in (whole.select_windows(chosen), whole)
     )
     np.testing.assert_allclose(part, expected[..., chosen], rtol=1e-9)

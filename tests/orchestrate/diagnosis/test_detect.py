@@ -8,10 +8,10 @@ import pytest
 import orchestrate
 from orchestrate.diagnosis.decision_rule import Beam
 from orchestrate.diagnosis.detect import DetectJob, beam_job, record_findings, sweep_direction
-from orchestrate.diagnosis.fit import checked_data
+from orchestrate.diagnosis.fit import checked_record_data
 from orchestrate.diagnosis.hypotheses import FREE
 from orchestrate.diagnosis.multistart import Search, Solution
-from orchestrate.diagnosis.search_job import bonded_even
+from orchestrate.diagnosis.search_job import cached_even_orders
 from orchestrate.diagnosis.settings import SETTINGS
 from tests.benches.bench import Bench
 from tests.benches.excitation import Swept
@@ -132,9 +132,9 @@ def test_a_sound_beam_that_twists_between_two_sensors_shows_no_opening():
     bench = three_sensors(Swept(36.0, 60.0, 6.0, 3.0), 1200.0)
     twisted = bench.measure(Halves(f1=46.0, f2=46.0).bonded_with_torsion(1.08, 0.5, 0.2), seed=3)[0]
     far = bench.measure(halves.delaminated(Faces(clearance=0.02)), seed=3)[0]
-    data = [checked_data(one) for one in (twisted, far)]
+    data = [checked_record_data(one) for one in (twisted, far)]
     beams = [Beam((record_findings(one, guess(f1=42.0, f2=50.0), True),)) for one in data]
-    assert all(bonded_even(one).moved_apart > 10.0 for one in data)
+    assert all(cached_even_orders(one).largest_sensor_difference > 10.0 for one in data)
     assert [beam.verdict() for beam in beams] == ["no opening seen", "undecided"]
     assert "Two modes of a sound beam do not describe" in beams[1].reason()
     second = orchestrate.fit(twisted, guess(f1=42.0, f2=50.0), hypothesis="two modes", **LIMIT)
@@ -146,13 +146,13 @@ PRESSED = -2.5e-4  # m: a fifth of what opens at the resonance
 
 def test_the_search_for_pressed_faces_starts_at_the_preload_that_opens_where_order_2_begins():
     pressed = record(BEAM.replace(clearance=PRESSED), noise=0.01)
-    job = DetectJob(name="x", data=checked_data(pressed), guess=guess(), free=FREE)
+    job = DetectJob(name="x", data=checked_record_data(pressed), guess=guess(), free=FREE)
     hypothesis = job.hypotheses[-1]
     assert hypothesis.onset.common == pytest.approx(33.79, rel=0.01)
     starts = [one for one in hypothesis.starts(job.evidence) if one["split"] == 0.3]
-    gaps = [s["clearance"] * job.evidence.displacement for s in starts]
+    gaps = [s["clearance"] * job.evidence.largest_displacement for s in starts]
     assert min(abs(gap / PRESSED - 1.0) for gap in gaps) < 0.25
-    data = checked_data(record(BEAM.as_bonded()))
+    data = checked_record_data(record(BEAM.as_bonded()))
     silent = DetectJob(name="x", data=data, guess=guess(), free=FREE)
     assert silent.hypotheses[-1].onset is None and not silent.is_worth_a_search
     assert job.is_worth_a_search
@@ -219,7 +219,9 @@ def test_no_opening_is_seen_only_in_a_record_that_can_show_one(name):
 
 def test_of_halves_that_may_change_places_the_guess_decides():
     """One sensor, masses alike: both solutions miss about as much."""
-    job = DetectJob(name="x", data=checked_data(record(both=False)), guess=guess(), free=FREE)
+    job = DetectJob(
+        name="x", data=checked_record_data(record(both=False)), guess=guess(), free=FREE
+    )
     search = Search(job.hypotheses[-2], job.evidence)
     there = search.hypothesis.values_from_structure(guess(), job.evidence)
     mirrored = {**there, "split": -there["split"]}

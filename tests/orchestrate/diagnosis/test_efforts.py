@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from orchestrate.diagnosis import multistart
-from orchestrate.diagnosis.detect import halves_around
+from orchestrate.diagnosis.detect import assumed_halves
 from orchestrate.diagnosis.hypotheses import Bonded
-from orchestrate.diagnosis.misfit import soft_squares
+from orchestrate.diagnosis.misfit import soft_l1_loss
 from orchestrate.diagnosis.multistart import (
     Search,
     Solution,
@@ -31,7 +31,7 @@ class MadeUp(Search):
         super().__init__(Bonded(), SimpleNamespace(**record))
         self.function = residuals
 
-    def computed_residuals(self, values):
+    def compute_residuals(self, values):
         self.evaluations += 1
         x, y = values["f"] / 34.0 - 1.0, values["log_zeta"] + 4.0
         return np.array(self.function(x, y), dtype=float)
@@ -49,9 +49,9 @@ def test_one_goes_downhill_from_starts_that_differ(monkeypatch, is_rugged, count
     begun, search = [], MadeUp(lambda x, y: [x, y])
     monkeypatch.setattr(Bonded, "is_rugged", is_rugged)
     monkeypatch.setattr(
-        search, "refine", lambda values: begun.append(values) or Solution("", {}, 1)
+        search, "minimise", lambda values: begun.append(values) or Solution("", {}, 1)
     )
-    search.minima([{**HERE, "f": f} for f in (40.0, 35.0, 36.0, 39.0, 38.0)])
+    search.find_minima([{**HERE, "f": f} for f in (40.0, 35.0, 36.0, 39.0, 38.0)])
     assert [values["f"] for values in begun] == [35.0, 36.0, 38.0, 39.0][:count]
     one, near, other = (Solution("x", {"split": s, "e": 0.5}, 0.2) for s in (0.015, 0.02, -0.015))
     assert without_neighbours([one, near, other]) == [one, other]
@@ -60,9 +60,9 @@ def test_one_goes_downhill_from_starts_that_differ(monkeypatch, is_rugged, count
 def motions(function):
     """Motions of a way downhill, its end again among them, without those for derivatives."""
     search, places = MadeUp(function), []
-    derivatives = search.derivatives
-    search.derivatives = lambda *at: places.append(1) or derivatives(*at)
-    search.refine({"f": 36.0, "log_zeta": -3.5})
+    derivatives = search.residual_derivatives
+    search.residual_derivatives = lambda *at: places.append(1) or derivatives(*at)
+    search.minimise({"f": 36.0, "log_zeta": -3.5})
     return search.evaluations - 2 * len(places)
 
 
@@ -79,14 +79,14 @@ def test_four_regressions_at_most_and_three_that_gain_little(monkeypatch, gain, 
     """Of clouds of the whole size, and then a fifth of it and a twenty-fifth."""
     done = []
 
-    def from_cloud(residuals, bounds, values, covariance, seed, points):
+    def fit_to_cloud(residuals, bounds, values, covariance, seed, points):
         assert points == 3
         done.append(covariance[0, 0])
         lowest = (1.0 - gain) ** len(done) if gain > 2e-3 else 1.0 - gain
         model = {"best": HERE, "lowest": lowest, "damped_minima": lambda *_: [HERE]}
         return SimpleNamespace(**model, cloud_covariance=lambda: np.eye(2))
 
-    monkeypatch.setattr(multistart, "LinearModel", SimpleNamespace(from_cloud=from_cloud))
+    monkeypatch.setattr(multistart, "LinearModel", SimpleNamespace(fit_to_cloud=fit_to_cloud))
     MadeUp(lambda x, y: [9.0]).polish(Solution("", HERE, 1.0))
     assert done[1:] == pytest.approx(sizes)
 
@@ -97,15 +97,15 @@ def test_squares_are_beyond_noise_from_1_3_times_its_own(monkeypatch, times, mor
     noise = np.full((1, 1, 60), 0.01)
     search = MadeUp(lambda x, y: np.full((1, 1, 60), 0.01 * np.sqrt(times)))
     monkeypatch.setattr(
-        "orchestrate.diagnosis.standard_errors.scatter_changes", lambda residuals: [noise]
+        "orchestrate.diagnosis.standard_errors.simulate_scatter_changes", lambda residuals: [noise]
     )
     rows = np.zeros((60, 2))
     model = {"weighted_slopes": rows, "slopes": rows.reshape(1, 1, 60, 2)}
-    model |= {"scatter": np.zeros((3, 60)), "influence": -4.0 * np.eye(2)}
+    model |= {"scatter": np.zeros((3, 60)), "minus_inverse_normal_matrix": -4.0 * np.eye(2)}
     search.evidence.settings = replace(SETTINGS, contact_misfit=1e9)
     found = estimate_with_covariances(search, HERE, SimpleNamespace(**model))
-    squares = soft_squares(noise).sum()
-    beyond = max(soft_squares(noise * np.sqrt(times)).sum() - 1.3 * squares, 0.0)
+    squares = soft_l1_loss(noise).sum()
+    beyond = max(soft_l1_loss(noise * np.sqrt(times)).sum() - 1.3 * squares, 0.0)
     assert (beyond > 0.0) == more
     assert found.discrepancy[0] == pytest.approx(np.sqrt(0.1 * 4.0 * beyond), rel=1e-6)
 
@@ -115,7 +115,7 @@ def test_settings_that_are_assumed_differ_or_are_refused():
     for ratio, count in ((1.029, 1), (1.031, 2)):
         pair = [Solution("x", HERE, ratio * 0.5), Solution("x", HERE, 0.5)]
         assert len(with_distinct_misfits(pair, SETTINGS.distinct)) == count
-    guess = halves_around(40.0, SETTINGS)
+    guess = assumed_halves(40.0, SETTINGS)
     assert (guess.f1, guess.f2, guess.zeta1, guess.e) == pytest.approx((38.0, 42.0, 0.01, 0.6))
     made = checked_settings({"steps": 1, "ratio": 0.5, "delay": 0.99e6})
     assert (made.steps, made.ratio, made.rounds) == (1, 0.5, SETTINGS.rounds)

@@ -6,9 +6,9 @@ import pytest
 import orchestrate
 from orchestrate.diagnosis.even_orders import (
     even_orders,
-    sensor_difference,
-    smallest_openings,
-    thresholds,
+    order_2_thresholds,
+    scaled_sensor_difference,
+    smallest_visible_openings,
 )
 from tests.benches.bench import Bench
 from tests.benches.excitation import Swept
@@ -30,16 +30,20 @@ def test_faces_move_apart_where_their_order_2_differs(opposite):
         rows[f"acceleration{name}"] = gain * (np.sin(phase + 0.4) + order2) + noise
     base = 0.1 * np.sin(2.0 * np.pi * (26.0 + 0.8 * time) * time)
     evidence = record_evidence(orchestrate.record(time=time, box_acceleration=base, **rows))
-    even = even_orders(evidence, np.zeros_like(evidence.measured))
+    even = even_orders(evidence, np.zeros_like(evidence.measured_orders))
     assert even.is_order_2_seen and even.is_opening_seen
-    assert (even.moved_apart > 1.5) if opposite else (even.moved_apart < 0.5)
+    assert (
+        (even.largest_sensor_difference > 1.5)
+        if opposite
+        else (even.largest_sensor_difference < 0.5)
+    )
 
 
 def test_sensors_at_two_places_of_a_sound_beam_do_not_differ():
     apart = []
     for structure in (BEAM.as_bonded(), BEAM):
         evidence = record_evidence(seen_at(0.8, 0.65, structure))
-        apart.append(np.nanmax(sensor_difference(evidence, thresholds(evidence))))
+        apart.append(np.nanmax(scaled_sensor_difference(evidence, order_2_thresholds(evidence))))
     assert apart[0] < 0.1 and apart[1] > 2.0
 
 
@@ -54,6 +58,6 @@ def test_what_would_have_been_seen_is_not_below_an_opening_that_was_not(sensors)
     record, motion = bench.measure(halves.delaminated(faces), seed=3)
     gap, evidence = float(motion.largest_gap.max()), record_evidence(record)
     assert gap > 1e-5, "it opened"
-    assert not even_orders(evidence, np.zeros_like(evidence.measured)).is_order_2_seen
-    stated = smallest_openings(evidence, halves.m1, halves.m2)
+    assert not even_orders(evidence, np.zeros_like(evidence.measured_orders)).is_order_2_seen
+    stated = smallest_visible_openings(evidence, halves.m1, halves.m2)
     assert gap < np.nanmax(stated) < 5.0 * gap

@@ -12,7 +12,7 @@ from orchestrate.diagnosis.hypotheses import (
     NonlinearSpring,
 )
 from orchestrate.diagnosis.multistart import Search, misfit
-from orchestrate.diagnosis.standard_errors import estimate
+from orchestrate.diagnosis.standard_errors import estimate_with_errors
 from orchestrate.fmu import OSCILLATOR, Player, find
 from tests.benches.bench import Bench
 from tests.benches.excitation import Swept
@@ -34,7 +34,7 @@ def motion_of(evidence, structure, player):
 
 
 def missed(evidence, structure, player):
-    return misfit(evidence.residuals(motion_of(evidence, structure, player)))
+    return misfit(evidence.residuals_of_motion(motion_of(evidence, structure, player)))
 
 
 def test_the_true_motion_is_at_the_record_and_others_are_not(player):
@@ -42,13 +42,13 @@ def test_the_true_motion_is_at_the_record_and_others_are_not(player):
     wide = orchestrate.SweptSine(first=20.0, last=56.0, duration=20.0, acceleration=5.0)
     whole = record_evidence(record(sweep=wide))
     part = whole.near_resonance()
-    assert part.samples < 0.9 * whole.samples and len(part.used_windows) >= 8
-    for name in ("resonance", "displacement", "peaks"):
+    assert part.sample_count < 0.9 * whole.sample_count and len(part.used_windows) >= 8
+    for name in ("resonance", "largest_displacement", "peak_frequencies"):
         assert getattr(part, name) == pytest.approx(getattr(whole, name), rel=1e-12), name
     history = orchestrate.shake(BEAM, SWEEP, sample_rate=4000.0, progress=False)
     sensor = orchestrate.Sensor(bandwidth=250.0, sample_rate=4000.0)
     thinned = record_evidence(orchestrate.measure(history, sensor, excitation=SWEEP))
-    assert 400.0 < thinned.rate < 600.0 and missed(thinned, BEAM, player) < 0.15
+    assert 400.0 < thinned.sample_rate < 600.0 and missed(thinned, BEAM, player) < 0.15
     for evidence, most in ((record_evidence(record()), 0.08), (part, 0.1)):
         assert missed(evidence, BEAM, player) < most
         for changed in ({"f1": 30.6}, {"e": 0.6}, {"zeta2": 0.03}):
@@ -57,26 +57,31 @@ def test_the_true_motion_is_at_the_record_and_others_are_not(player):
 
 def test_gain_and_delay_of_a_sensor_are_found_in_closed_form(player):
     evidence = record_evidence(record(gain=1.04))
-    computed = evidence.orders_of_motion(motion_of(evidence, BEAM, player))
-    found = [evidence.sensor_error(row, computed[row, 0]) for row in (0, 1)]
+    computed = evidence.ideal_orders(motion_of(evidence, BEAM, player))
+    found = [evidence.fit_sensor_errors(row, computed[row, 0]) for row in (0, 1)]
     factors, gains, delays = zip(*found, strict=True)
     np.testing.assert_allclose(factors, 1.0, atol=1e-2)
     np.testing.assert_allclose(gains, [1.04, 1.0], atol=1e-2)
     assert max(map(abs, delays)) < 4e-6
     late = computed * np.exp(-2j * np.pi * evidence.frequency * 1e-4)
-    assert evidence.sensor_error(1, late[1, 0])[2] == pytest.approx(-1e-4, rel=0.05)
+    assert evidence.fit_sensor_errors(1, late[1, 0])[2] == pytest.approx(-1e-4, rel=0.05)
 
 
 def test_what_is_computed_at_once_is_what_windows_give(player):
     """Impulses do not come back from above the sampling rate."""
     evidence = record_evidence(record())
     motion = motion_of(evidence, BEAM, player)
-    second = np.pad(np.diff(motion, 2, axis=1), ((0, 0), (1, 1)), mode="edge") * evidence.rate**2
-    read = np.sinc(np.outer((1, 2, 3), evidence.frequency) / evidence.rate) ** 2
-    expected = evidence.windows.amplitudes(second) / read + evidence.base
-    computed = evidence.orders_of_motion(motion)
+    second = (
+        np.pad(np.diff(motion, 2, axis=1), ((0, 0), (1, 1)), mode="edge") * evidence.sample_rate**2
+    )
+    read = np.sinc(np.outer((1, 2, 3), evidence.frequency) / evidence.sample_rate) ** 2
+    expected = evidence.windows.amplitudes(second) / read + evidence.base_orders
+    computed = evidence.ideal_orders(motion)
     np.testing.assert_allclose(computed, expected, atol=1e-9 * abs(expected).max())
-    assert np.median(abs(computed[:, 0] - evidence.measured[:, 0]) / evidence.size) < 2e-3
+    assert (
+        np.median(abs(computed[:, 0] - evidence.measured_orders[:, 0]) / evidence.order_1_size)
+        < 2e-3
+    )
 
 
 def test_a_bonded_structure_is_one_mass():
@@ -84,7 +89,7 @@ def test_a_bonded_structure_is_one_mass():
     common = Delaminated(BEAM).values_from_structure(BEAM, evidence)["common"]
     zeta = (BEAM.d1 + BEAM.d2) / (2.0 * (BEAM.m1 + BEAM.m2) * 2.0 * np.pi * common)
     motion = Bonded().displacements({"f": common, "log_zeta": np.log(zeta)}, evidence, None)
-    assert misfit(evidence.residuals(motion)) < 0.02
+    assert misfit(evidence.residuals_of_motion(motion)) < 0.02
 
 
 def test_pressed_faces_that_slide_are_described_with_friction(player):
@@ -100,20 +105,20 @@ def test_pressed_faces_that_slide_are_described_with_friction(player):
     values = hypothesis.values_from_structure(beam, evidence)
     rubbing = ({**values, "friction": f} for f in np.linspace(0.0, 0.5, 11))
     motions = (hypothesis.displacements(one, evidence, player) for one in rubbing)
-    missed = [misfit(evidence.residuals(one)) for one in motions]
+    missed = [misfit(evidence.residuals_of_motion(one)) for one in motions]
     assert min(missed) < 0.5 and missed[0] > 2.0, missed
 
 
 def test_motions_without_bounds_are_far_from_the_record_and_have_errors_too():
     evidence = record_evidence(record(BEAM.as_bonded()))
-    nowhere = np.full((1, evidence.samples), np.nan)
-    gone = evidence.residuals(nowhere)
+    nowhere = np.full((1, evidence.sample_count), np.nan)
+    gone = evidence.residuals_of_motion(nowhere)
     assert np.isfinite(gone).all() and misfit(gone) > 5.0
-    computed = evidence.corrected_for_sensors(evidence.orders_of_motion(nowhere))
-    assert misfit(evidence.order_residuals(computed)) > 5.0
+    computed = evidence.correct_for_sensors(evidence.ideal_orders(nowhere))
+    assert misfit(evidence.residuals_of_orders(computed)) > 5.0
     search = Search(NonlinearSpring(), evidence)
     values = {"f": evidence.resonance, "log_zeta": -5.0, "square": -1.0, "cube": -0.9}
     for one in (values, {**values, "f": 2.0 * evidence.resonance}):
-        assert np.isfinite(estimate(search, one).covariance).all()
+        assert np.isfinite(estimate_with_errors(search, one).covariance).all()
     evidence.__dict__["displacement"] = 1e-12  # as of a sensor that hardly moves
     assert np.isnan(search.hypothesis.displacements(values, evidence, None)[0, -1])

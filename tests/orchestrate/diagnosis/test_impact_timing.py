@@ -12,13 +12,13 @@ from orchestrate.diagnosis import impact_timing
 from orchestrate.diagnosis.impact_timing import (
     TIMING,
     Strikes,
-    amplitudes,
-    stiffnesses,
-    strikes,
-    strikes_at,
-    timed_power,
+    measure_strikes,
+    power_over_phase,
+    project_on_waves,
+    rest_frequency_and_stiffness,
+    strikes_of_sensor,
 )
-from orchestrate.diagnosis.order_windows import checked_channels
+from orchestrate.diagnosis.order_windows import checked_base_and_faces
 from orchestrate.laboratory.analysis.channels import Channels
 from tests.benches import recipe
 from tests.benches.strikers import STRIKERS
@@ -77,8 +77,8 @@ def strikes_of(monkeypatch, windows):
     """What is said of made-up windows: how far the bins rise, power, peak and stroke."""
     rest = 0.9, 0.5, 0.1, math.nan, 1.0, 1.0
     rows = [(*bins, power, peak, *rest, stroke) for *bins, power, peak, stroke in windows]
-    monkeypatch.setattr(impact_timing, "timed_windows", lambda *given: iter(rows))
-    return strikes_at(None, [0], 40.0, TIMING)
+    monkeypatch.setattr(impact_timing, "window_quantities", lambda *given: iter(rows))
+    return strikes_of_sensor(None, [0], 40.0, TIMING)
 
 
 @pytest.mark.parametrize(
@@ -112,13 +112,13 @@ def test_the_loudest_bin_is_compared_with_the_quietest_third(samples, bins):
     number, each = np.arange(bins), samples // bins
     power, middle = 1.0 + 7 * number % bins, TURN * (number + 0.5) / bins  # 1 to 32, in disorder
     both = [np.sqrt(power).repeat(each), -1.0 * (np.arange(samples) % each > 0)]
-    found = timed_power(both, TURN * (5.0 + (np.arange(samples) + 0.5) / samples), TIMING)
+    found = power_over_phase(both, TURN * (5.0 + (np.arange(samples) + 0.5) / samples), TIMING)
     floor, limit = np.sort(power)[: bins // 3].mean(), chi2.isf(1e-4 / bins, each) / each
     above, place = np.maximum(power - floor, 0.0), middle[power.argmax()]
     moment = abs(above @ np.exp(1j * middle)) / above.sum()
     rise, opposite = bins / floor / limit, -math.sqrt(1.0 - 1.0 / each)
     assert found == pytest.approx((rise, bins - floor, place, moment, opposite))
-    few = timed_power([np.array([1.0, 1.0, 3.0])], TURN * np.array([0.1, 0.2, 0.3]), TIMING)
+    few = power_over_phase([np.array([1.0, 1.0, 3.0])], TURN * np.array([0.1, 0.2, 0.3]), TIMING)
     assert few[2] == pytest.approx(TURN * 4.5 / 16)  # of a record too slow to fill its bins
 
 
@@ -127,7 +127,9 @@ def test_noise_alone_is_far_below_a_strike():
     rng = np.random.default_rng(3)
     for count, most in ((1024, 0.7 * TIMING.faint), (60, TIMING.heard)):
         phase = 10.0 * TURN * np.arange(count) / count
-        rises = [timed_power([rng.standard_normal(count)], phase, TIMING)[0] for _ in range(500)]
+        rises = [
+            power_over_phase([rng.standard_normal(count)], phase, TIMING)[0] for _ in range(500)
+        ]
         assert max(rises) < most
 
 
@@ -146,7 +148,7 @@ def test_a_blow_is_the_median_of_orders_6_to_12_over_order_2():
         face += sum(
             0.1 * order * np.sin(order * phase) for order in range(3, min(13, samples // 2))
         )
-        found = strikes_at(swept_channels(face, samples), [1], 45.0, TIMING)
+        found = strikes_of_sensor(swept_channels(face, samples), [1], 45.0, TIMING)
         assert found.blow == pytest.approx(expected * math.sqrt(19.0), rel=0.01)
 
 
@@ -168,7 +170,7 @@ def test_lengths_are_parts_of_the_period(monkeypatch, samples, memory):
         "integrate_in_time",
         lambda *all: cuts.append(all[2:]) or integrate_in_time(*all),
     )
-    found = strikes_at(swept_channels(face, samples), [1], 45.0, TIMING)
+    found = strikes_of_sensor(swept_channels(face, samples), [1], 45.0, TIMING)
     assert {order for _, order in lengths} == {memory}
     assert [length for length, _ in lengths] == pytest.approx([10 * samples] * 2 * 5, abs=2)
     own = (0.31 - 0.75) % 1.0  # of a period after the top of the stroke
@@ -179,10 +181,10 @@ def test_lengths_are_parts_of_the_period(monkeypatch, samples, memory):
 
 def test_the_sensor_that_hears_most_is_asked(monkeypatch):
     heard = lambda channels, rows, *rest: replace(FACES, heard=(9.0, 3.0, 5.0)[rows[0]])  # noqa: E731
-    monkeypatch.setattr(impact_timing, "strikes_at", heard)
+    monkeypatch.setattr(impact_timing, "strikes_of_sensor", heard)
     names = ("box_acceleration", "acceleration1", "acceleration2")
     channels = Channels(np.zeros(1), 1.0, names, np.zeros((3, 1)), "")
-    assert strikes(channels).heard == 5.0
+    assert measure_strikes(channels).heard == 5.0
 
 
 def test_one_window_by_itself_does_not_move_the_place(monkeypatch):
@@ -196,14 +198,16 @@ def test_one_window_by_itself_does_not_move_the_place(monkeypatch):
 @pytest.mark.parametrize("word", WORDS)
 def test_each_quantity_has_its_word(word):
     for changes in WORDS[word]:
-        assert replace(FACES, **changes).word() == word, changes
+        assert replace(FACES, **changes).what_strikes() == word, changes
 
 
 def test_an_offset_is_in_no_order_of_a_sweep():
     phase = 20.0 * np.pi * np.linspace(0.0, 1.0, 900) ** 1.2
     waves, face = np.exp(-1j * np.outer([1, 2], phase)), np.sin(phase)
-    assert amplitudes(face + 9.8, waves) == pytest.approx(amplitudes(face, waves), abs=1e-12)
-    assert abs(amplitudes(face, waves)) == pytest.approx([1.0, 0.0], abs=0.01)
+    assert project_on_waves(face + 9.8, waves) == pytest.approx(
+        project_on_waves(face, waves), abs=1e-12
+    )
+    assert abs(project_on_waves(face, waves)) == pytest.approx([1.0, 0.0], abs=0.01)
 
 
 def timed(kind, seed, sensors=1):
@@ -213,7 +217,7 @@ def timed(kind, seed, sensors=1):
     truth, guess = case.truth, case.guess
     masses, turns = np.array([guess.m1, guess.m2]), np.array([truth.f1, truth.f2])
     shut = math.sqrt((masses * turns**2).sum() / masses.sum()) * rng.uniform(0.97, 1.03)
-    return strikes(checked_channels(case.record), shut)
+    return measure_strikes(checked_base_and_faces(case.record), shut)
 
 
 def windows(part=0.5, growth=0.2, count=60):
@@ -232,12 +236,14 @@ def test_a_participation_is_told_by_the_windows_in_which_nothing_strikes(quiet, 
     struck = size == size.max() if loudest else loud
     near = abs(np.log(turns / np.median(turns[struck]))) <= math.log(TIMING.near)
     mask = ~struck & (np.cumsum(near & ~struck) <= quiet)
-    rest, squares = stiffnesses(motion, struck, mask, TIMING)
+    rest, squares = rest_frequency_and_stiffness(motion, struck, mask, TIMING)
     used = np.zeros(60, bool)
     for k in range(60):
         off = np.array(motion)
         off[0, k] *= 1.0001
-        used[k] = abs(stiffnesses(off, struck, mask, TIMING)[0] / rest - 1.0) > 1e-9
+        used[k] = (
+            abs(rest_frequency_and_stiffness(off, struck, mask, TIMING)[0] / rest - 1.0) > 1e-9
+        )
     least = near & (size <= max(0.5 * size[struck].min(), np.quantile(size[near], 1.0 / 3.0)))
     assert used.tolist() == (near & mask if (near & mask).sum() > 7 else least).tolist()
     growth = (TURN * np.sqrt(squares)) ** 2 - 1.0
@@ -248,13 +254,13 @@ def test_a_participation_is_told_by_the_windows_in_which_nothing_strikes(quiet, 
 def test_at_one_frequency_a_participation_is_1():
     """There the windows do not tell it from the stiffness."""
     motion = windows()[0][:, :1] * np.linspace(1.0, 2.0, 60)
-    rest, _ = stiffnesses(motion, np.arange(60) == 0, np.ones(60, bool), TIMING)
+    rest, _ = rest_frequency_and_stiffness(motion, np.arange(60) == 0, np.ones(60, bool), TIMING)
     moved, base, stroke = motion[:, 0]
     assert TURN * rest == pytest.approx(math.sqrt(-((moved + base) / stroke).real), rel=1e-4)
     # strokes that differ by as little as 1 weighs: midway between it and the true one of 0.5
     size, base = 1.0 + 1e-3 * (-1.0) ** np.arange(60), 3.0
     motion = np.array([-(0.5 * base + size), np.full(60, base), size + 0j])
-    rest, _ = stiffnesses(motion, np.arange(60) == 0, np.ones(60, bool), TIMING)
+    rest, _ = rest_frequency_and_stiffness(motion, np.arange(60) == 0, np.ones(60, bool), TIMING)
     assert TURN * rest == pytest.approx(math.sqrt(1.0 - 0.25 * base), rel=1e-3)
 
 
@@ -265,7 +271,7 @@ def test_the_beam_at_rest_is_measured_near_the_loud_windows(factor, is_near):
     turns = np.sqrt(abs(motion[0] / motion[2]))
     quiet = turns > factor * np.median(turns[loud])
     motion[0, quiet] -= 0.03 * motion[2, quiet]  # as if the beam were stiffer
-    found = stiffnesses(motion, loud, quiet, TIMING)[0] * TURN
+    found = rest_frequency_and_stiffness(motion, loud, quiet, TIMING)[0] * TURN
     assert found == pytest.approx(math.sqrt(1.03 if is_near else 1.0), abs=0.003)
 
 
@@ -286,8 +292,8 @@ def test_a_growth_ends_at_the_stiffness_of_shut_faces(
     motion, loud = windows(growth=growth)
     rest = np.ones(60), 9.0 * loud, np.zeros(60), np.ones(60), np.ones(60), np.full(60, 0.2)
     rows = zip(np.where(loud, 9.0, 0.5), *rest, np.full(60, math.nan), *motion, strict=True)
-    monkeypatch.setattr(impact_timing, "timed_windows", lambda *given: iter(rows))
-    found = strikes_at(None, [0], shut / TURN, TIMING)
+    monkeypatch.setattr(impact_timing, "window_quantities", lambda *given: iter(rows))
+    found = strikes_of_sensor(None, [0], shut / TURN, TIMING)
     expected = stiffens if math.isnan(shut) or growth < 0.0 else stiffens / 0.2
     assert found.stiffens == pytest.approx(expected, abs=0.05)
     assert found.stiffness == pytest.approx(stiffness, abs=0.01, nan_ok=True)
@@ -295,9 +301,9 @@ def test_a_growth_ends_at_the_stiffness_of_shut_faces(
 
 def test_beams_of_other_frequencies_have_the_same_numbers():
     """Six milliseconds were a fifteenth of a period at 12 Hz: blows were not told as opposite."""
-    channels = checked_channels(recipe.draw(np.random.default_rng(5), "delaminated").record)
+    channels = checked_base_and_faces(recipe.draw(np.random.default_rng(5), "delaminated").record)
     slow = replace(channels, time=4.0 * channels.time, sample_rate=0.25 * channels.sample_rate)
-    expected, found = strikes(channels, 45.0), strikes(slow, 11.25)
+    expected, found = measure_strikes(channels, 45.0), measure_strikes(slow, 11.25)
     assert expected.heard > 20.0
     assert list(vars(found).values()) == pytest.approx([*vars(expected).values()], nan_ok=True)
 
@@ -308,7 +314,7 @@ OTHERS = ["sound", "crack", "play", "fixture", "bearing", "washer"]
 @pytest.mark.parametrize("kind", ["delaminated", "stop", *ordinary(OTHERS)])
 def test_faces_are_told_from_stops_and_kinks(kind):
     """Order 2, bursts and misfits of both overlap; where and when they strike does not."""
-    word = timed(kind, 203).word()
+    word = timed(kind, 203).what_strikes()
     assert (word == "faces strike") == (kind == "delaminated"), word
     assert (word == "stop") == (kind in ("stop", "play")), word
 
@@ -317,4 +323,4 @@ def test_faces_are_told_from_stops_and_kinks(kind):
 def test_two_faces_are_struck_in_opposite_directions(kind):
     struck = timed(kind, 203, sensors=2)
     assert struck.opposite < -0.97 if kind == "delaminated" else struck.opposite > 0.9
-    assert (struck.word() == "faces strike") == (kind == "delaminated")
+    assert (struck.what_strikes() == "faces strike") == (kind == "delaminated")

@@ -44,7 +44,7 @@ def test_of_a_sound_cantilever_no_opening_is_seen():
 
 def test_a_factor_that_is_given_is_kept():
     measured, how = seen_at(0.6), {"hypothesis": "bonded", "jobs": 1, "progress": False}
-    assert record_evidence(measured).given_participation(0) is None
+    assert record_evidence(measured).fixed_participation(0) is None
     free = orchestrate.fit(measured, guess(), **how)
     kept = orchestrate.fit(measured, guess(), participation=0.9, **how)
     assert kept.participation.values.tolist() == [0.9] and kept.participation_error.item() == 0.0

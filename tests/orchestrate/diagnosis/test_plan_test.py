@@ -9,13 +9,13 @@ import pytest
 
 import orchestrate
 import orchestrate.diagnosis.plan_test as rehearsed
-from orchestrate.diagnosis.opening import opening_force, sweep_rate
+from orchestrate.diagnosis.opening import max_steady_sweep_rate, unit_opening_force
 from orchestrate.diagnosis.plan_test import (
     PlanJob,
     checked_sensors,
+    default_sweep_range,
     recommended_levels,
-    slow_enough,
-    usual_ends,
+    sweep_duration,
 )
 from orchestrate.diagnosis.undamaged import SoundStructure
 from orchestrate.errors import InputError
@@ -42,15 +42,15 @@ def test_the_opening_force_is_that_of_the_bonded_motion(exported, hertz):
     # the equation of mass 2: what its spring, its damper and its inertia do not balance
     box = -3.0 * np.sin(turns * time)
     force = HALVES.m2 * (a2 + box) + HALVES.k2 * x2 + HALVES.d2 * v2
-    assert np.abs(force).max() == pytest.approx(3.0 * opening_force(HALVES, hertz), rel=2e-3)
+    assert np.abs(force).max() == pytest.approx(3.0 * unit_opening_force(HALVES, hertz), rel=2e-3)
 
 
 def test_halves_that_move_alike_are_never_opened():
-    assert sweep_rate(50.0, 0.01) == pytest.approx(0.9)  # Hz/s
+    assert max_steady_sweep_rate(50.0, 0.01) == pytest.approx(0.9)  # Hz/s
     share = HALVES.m1 / (HALVES.m1 + HALVES.m2)
     k, d = HALVES.k1 + HALVES.k2, HALVES.d1 + HALVES.d2
     alike = HALVES.replace(k1=share * k, k2=(1 - share) * k, d1=share * d, d2=(1 - share) * d)
-    assert opening_force(HALVES, 46.0) > 1.0 and opening_force(alike, 46.0) < 1e-9
+    assert unit_opening_force(HALVES, 46.0) > 1.0 and unit_opening_force(alike, 46.0) < 1e-9
 
 
 def test_a_level_is_recommended_at_which_both_verdicts_are_right_with_a_reserve(plan):
@@ -64,7 +64,7 @@ def test_a_level_is_recommended_at_which_both_verdicts_are_right_with_a_reserve(
     f, zeta = sound.f, sound.zeta
     assert float(plan.recommended_first) < 0.7 * f < 1.3 * f < float(plan.recommended_last)
     span = float(plan.recommended_last - plan.recommended_first)
-    assert float(plan.recommended_duration) >= 0.999 * span / sweep_rate(f, zeta)
+    assert float(plan.recommended_duration) >= 0.999 * span / max_steady_sweep_rate(f, zeta)
 
 
 @pytest.mark.parametrize(("clearance", "shaken"), [(0.0, [1.0, 1.0]), (1e-4, [2.0, 4.0])])
@@ -77,14 +77,14 @@ def test_what_is_proportional_to_the_level_is_shaken_once(monkeypatch, clearance
         levels.append(level)
         return felt, 1e-3 * level
 
-    monkeypatch.setattr(rehearsed, "readings", readings)
+    monkeypatch.setattr(rehearsed, "shake_and_measure", readings)
     sensors = tuple(dict.fromkeys(("box_acceleration", "acceleration1"), SENSOR).items())
     own = HALVES.replace(clearance=clearance)
     ends = {"first": 20.0, "last": 80.0, "duration": 2.0, "reserve": 2.0}
     job = PlanJob(name="x", structure=own, sensors=sensors, levels=(2.0, 4.0), **ends)
-    rows = [job.rehearsal(own, level, {}) for level in job.levels]
+    rows = [job.rehearse(own, level, {}) for level in job.levels]
     assert levels == shaken and [row[2] for row in rows] == [2e-3, 4e-3]
-    assert job.rehearsal(own.as_bonded(), 4.0, {})[2] == 4e-3 and levels[-1] == 1.0
+    assert job.rehearse(own.as_bonded(), 4.0, {})[2] == 4e-3 and levels[-1] == 1.0
 
 
 @pytest.mark.parametrize(
@@ -93,16 +93,16 @@ def test_what_is_proportional_to_the_level_is_shaken_once(monkeypatch, clearance
 def test_a_rehearsal_takes_as_many_periods_at_any_frequency(zeta, periods):
     """At 950 Hz it took 12,900, six minutes on a busy computer."""
     for f in (95.0, 950.0):
-        assert f * slow_enough(f, zeta, 0.65 * f, 1.4 * f) == pytest.approx(periods, rel=1e-3)
+        assert f * sweep_duration(f, zeta, 0.65 * f, 1.4 * f) == pytest.approx(periods, rel=1e-3)
 
 
 def test_a_sweep_passes_the_resonance_and_those_of_the_halves():
     """By a tenth, and takes two minutes at most."""
     near = HALVES.replace(f1=46.0, f2=46.0)
-    assert usual_ends(near) == pytest.approx((0.65 * 46.0, 1.4 * 46.0))
+    assert default_sweep_range(near) == pytest.approx((0.65 * 46.0, 1.4 * 46.0))
     far = HALVES.replace(f1=20.0, f2=200.0)
-    assert usual_ends(far) == pytest.approx((18.0, 220.0))
-    assert slow_enough(10.0, 0.001, 6.5, 14.0) == 120.0
+    assert default_sweep_range(far) == pytest.approx((18.0, 220.0))
+    assert sweep_duration(10.0, 0.001, 6.5, 14.0) == 120.0
 
 
 def test_a_rehearsal_samples_no_faster_than_the_rule_needs():
@@ -133,7 +133,7 @@ def test_preloaded_faces_open_from_a_level_in_closed_form(exported):
     force = 0.3  # N; at 46 Hz the faces need 1.9 N for each m/s2
     k1, k2 = HALVES.k1, HALVES.k2
     pressed = HALVES.replace(clearance=-force * (k1 + k2) / (k1 * k2))
-    needed = force / float(opening_force(HALVES, np.linspace(44.0, 50.0, 6001)).max())
+    needed = force / float(unit_opening_force(HALVES, np.linspace(44.0, 50.0, 6001)).max())
     levels = [0.9 * needed, 20.0 * needed]
     plan = orchestrate.plan_test(pressed, sensor=SENSOR, levels=levels, jobs=1, progress=False)
     assert float(plan.opening_level) == pytest.approx(needed, rel=1e-3)

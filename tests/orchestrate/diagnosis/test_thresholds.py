@@ -9,8 +9,8 @@ import pytest
 
 from orchestrate.diagnosis import search_job
 from orchestrate.diagnosis.decision_rule import DELAMINATED, NOT_SEEN, UNDECIDED, Beam
-from orchestrate.diagnosis.detect import stated_hypotheses
-from orchestrate.diagnosis.even_orders import even_orders, thresholds
+from orchestrate.diagnosis.detect import is_hypothesis_stated
+from orchestrate.diagnosis.even_orders import even_orders, order_2_thresholds
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fit import Results
 from orchestrate.diagnosis.hypotheses import Delaminated, DryFriction
@@ -18,7 +18,7 @@ from orchestrate.diagnosis.multistart import Solution
 from orchestrate.diagnosis.search_job import SearchJob
 from orchestrate.diagnosis.settings import SETTINGS
 from orchestrate.diagnosis.standard_errors import contact_covariance, squares_beyond_noise
-from orchestrate.diagnosis.wiring import WIRING, LowResponse, is_heard, sensor_notes
+from orchestrate.diagnosis.wiring import WIRING, LowResponse, is_above_floor, sensor_notes
 
 from .records import BEAM
 from .test_verdicts import OPENED, QUIET
@@ -88,7 +88,7 @@ def orders(face, base, floor=0.0):
         channels=SimpleNamespace(names=("acceleration1",)),
         amplitude=face[None, None, :],
         floor=np.full((1, len(face)), floor),
-        order=lambda number, name: base,
+        order_amplitudes=lambda number, name: base,
         windows=SimpleNamespace(frequency=np.linspace(10.0, 20.0, len(face))),
         level=np.ones(len(face)),
     )
@@ -111,7 +111,7 @@ def orders(face, base, floor=0.0):
 def test_each_threshold_of_a_dead_or_exchanged_sensor(face, base, floor, kinds):
     made = orders(face, base, floor)
     assert [note.kind for note in sensor_notes(made, 0, WIRING)] == kinds
-    assert is_heard(made, 0, WIRING) or kinds == ["dead"]
+    assert is_above_floor(made, 0, WIRING) or kinds == ["dead"]
 
 
 def windows(one, other=None, noise=0.0, floor=0.0):
@@ -119,11 +119,11 @@ def windows(one, other=None, noise=0.0, floor=0.0):
     rows = [row for row in (one, other) if row is not None]
     measured = np.array([[np.broadcast_to(order, 40) for order in row] for row in rows], complex)
     return SimpleNamespace(
-        measured=measured,
+        measured_orders=measured,
         noise=np.full(len(rows), noise),
         floor=np.full((len(rows), 40), floor),
-        size=np.abs(measured[:, 0]),
-        base=np.zeros((2, 40), complex),
+        order_1_size=np.abs(measured[:, 0]),
+        base_orders=np.zeros((2, 40), complex),
         frequency=np.linspace(20.0, 40.0, 40),
         settings=SETTINGS,
     )
@@ -139,7 +139,7 @@ def windows(one, other=None, noise=0.0, floor=0.0):
 )
 def test_each_threshold_of_order_2(noise, floor, order2, seen):
     evidence = windows((1.0, order2), noise=noise, floor=floor)
-    assert even_orders(evidence, np.zeros_like(evidence.measured)).is_order_2_seen == seen
+    assert even_orders(evidence, np.zeros_like(evidence.measured_orders)).is_order_2_seen == seen
 
 
 @pytest.mark.parametrize(
@@ -157,13 +157,13 @@ def test_each_threshold_of_faces_that_move_apart(other, apart):
 
 
 def even_orders_of(evidence):
-    return even_orders(evidence, np.zeros_like(evidence.measured)).moved_apart
+    return even_orders(evidence, np.zeros_like(evidence.measured_orders)).largest_sensor_difference
 
 
 def test_little_moves_below_a_tenth_of_the_largest_order_1():
     size = np.where(np.arange(40) < 20, 1.0, 0.11)
     size[30:] = 0.09
-    seen = thresholds(windows((size, 0.0)))[0]
+    seen = order_2_thresholds(windows((size, 0.0)))[0]
     assert np.isfinite(seen[22:28]).all() and np.isnan(seen[33:]).all()
 
 
@@ -178,7 +178,7 @@ def test_little_moves_below_a_tenth_of_the_largest_order_1():
 def test_each_threshold_of_stated_numbers(sound, parted, stated):
     job = SimpleNamespace(sound=[1], data=SimpleNamespace(settings=SETTINGS))
     fits = SimpleNamespace(job=job, misfit=np.array([sound, parted]))
-    found = [stated_hypotheses(fits, word).tolist() for word in (NOT_SEEN, DELAMINATED)]
+    found = [is_hypothesis_stated(fits, word).tolist() for word in (NOT_SEEN, DELAMINATED)]
     assert found == [[stated == "sound", False], [False, stated == "parted"]]
     described = Results.is_described.fget(fits)
     assert described.tolist() == [sound <= 3.0, parted <= 3.0]
@@ -186,9 +186,9 @@ def test_each_threshold_of_stated_numbers(sound, parted, stated):
 
 def test_errors_of_orders_are_those_of_a_good_model_and_of_what_is_irregular():
     size, floor, noise = np.full((1, 3), 2.0), np.array([[0.0, 1.0, 0.1]]), np.array([0.2])
-    made = SimpleNamespace(settings=SETTINGS, size=size, floor=floor, noise=noise)
+    made = SimpleNamespace(settings=SETTINGS, order_1_size=size, floor=floor, noise=noise)
     expected = np.hypot(0.03 * 2.0, [0.2, 1.5, 0.2])
-    assert Evidence.error.func(made)[0] == pytest.approx(np.tile(expected, (3, 1)))
+    assert Evidence.standard_deviation.func(made)[0] == pytest.approx(np.tile(expected, (3, 1)))
 
 
 def read_by(gain, delay, error, hertz=100.0, participation=1.0):
@@ -200,12 +200,12 @@ def read_by(gain, delay, error, hertz=100.0, participation=1.0):
         settings=SETTINGS,
         participation=(participation,),
         windows=SimpleNamespace(is_tone=False),
-        base=np.zeros((3, 30), complex),
-        measured=read[None, None],
-        error=np.full((1, 3, 30), 2.0 * error),
+        base_orders=np.zeros((3, 30), complex),
+        measured_orders=read[None, None],
+        standard_deviation=np.full((1, 3, 30), 2.0 * error),
         frequency=np.full(30, hertz),
     )
-    return made.sensor_error(0, computed)
+    return made.fit_sensor_errors(0, computed)
 
 
 def test_a_gain_and_a_delay_are_held_by_their_deviations_where_records_say_little():
@@ -234,8 +234,9 @@ def test_a_participation_takes_its_part_of_what_a_gain_could_explain_too():
 def test_a_damping_ratio_of_which_half_is_error_is_not_determined(error, found):
     job = SimpleNamespace(data=SimpleNamespace(settings=SETTINGS))
     reported = {"f": 42.0, "zeta": 0.01}, np.diag([1e-4, error**2])
-    fits = SimpleNamespace(job=job, is_described=[True], reported_values=lambda position: reported)
-    assert set(Results.undetermined(fits, 0)) == found
+    fits = SimpleNamespace(job=job, is_described=[True])
+    fits.reported_values_and_covariance = lambda position: reported
+    assert set(Results.why_undetermined(fits, 0)) == found
 
 
 def test_doubt_about_real_contacts_grows_with_what_the_contact_misses():
@@ -250,7 +251,8 @@ def test_doubt_about_real_contacts_grows_with_what_the_contact_misses():
 
 
 def test_dry_friction_is_viscous_below_a_hundredth_of_the_largest_speed():
-    made = SimpleNamespace(settings=SETTINGS, resonance=34.0, displacement=2e-3, level=[3.0, 5.0])
+    made = SimpleNamespace(settings=SETTINGS, resonance=34.0, level=[3.0, 5.0])
+    made.largest_displacement = 2e-3
     mass = DryFriction().single_mass({"f": 34.0, "log_zeta": -4.0, "friction": 0.2}, made)
     assert (mass.slow, mass.friction) == pytest.approx((0.01 * 2.0 * math.pi * 34.0 * 2e-3, 0.8))
 
@@ -269,7 +271,7 @@ def test_the_second_best_minimum_goes_on_too_if_it_is_close(monkeypatch, misfit,
     search.polish = lambda one: one
     job = SimpleNamespace(data=SimpleNamespace(settings=SETTINGS), evidence=None)
     job.sort_by_misfit_and_guess = lambda search, ends: ends
-    SearchJob.improved(job, search, [], [], True)
+    SearchJob.refine_minima(job, search, [], [], True)
     assert [start["split"] for start in went_on] == tried
 
 

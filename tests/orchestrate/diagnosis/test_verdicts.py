@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from orchestrate.diagnosis.decision_rule import Beam, Findings, factor_outside
+from orchestrate.diagnosis.decision_rule import Beam, Findings, factor_outside_range
 from orchestrate.diagnosis.detect import beam_job
 from orchestrate.diagnosis.fit import reported_derivatives
 from orchestrate.diagnosis.hypotheses import FREE, Delaminated
@@ -97,7 +97,9 @@ STOPS = {  # and what is named, and what helps
 @pytest.mark.parametrize("name", STOPS)
 def test_what_keeps_a_quiet_record_from_its_verdict_is_named(name):
     changes, reason, advice = STOPS[name]
-    assert Beam((QUIET,)).verdict() == "no opening seen" and not Beam((QUIET,)).broken_conditions()
+    assert (
+        Beam((QUIET,)).verdict() == "no opening seen" and not Beam((QUIET,)).violated_conditions()
+    )
     stopped = Beam((replace(QUIET, **changes),))
     assert stopped.verdict() == "undecided"
     assert reason.lower() in stopped.reason().lower() and advice in stopped.next_measurement()
@@ -111,7 +113,7 @@ def test_whose_frequencies_a_resonance_is_away_from_is_named(given):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # that says so of a guess
         beam = beam_job([first, slow], given, FREE, None, SETTINGS).beam()
-    *_, away = beam.records[1].record_conditions()
+    *_, away = beam.records[1].usability_conditions()
     assert not away.holds
     low, high = (32.1, 35.5) if given is None else (30.0, 38.0)
     named = re.search("from the (.*) ([0-9.]+) to ([0-9.]+) Hz", away.reason)
@@ -161,7 +163,10 @@ def test_numbers_at_their_bounds_are_reported_with_slopes():
 
 
 def test_a_factor_outside_a_range():
-    assert (factor_outside(10.0, 20.0, 30.0), factor_outside(45.0, 20.0, 30.0)) == (2.0, 1.5)
+    assert (factor_outside_range(10.0, 20.0, 30.0), factor_outside_range(45.0, 20.0, 30.0)) == (
+        2.0,
+        1.5,
+    )
 
 
 def test_numbers_of_texts_are_short_and_beside_their_limits_as_long_as_it_takes():

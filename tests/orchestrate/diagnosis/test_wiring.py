@@ -9,7 +9,7 @@ import pytest
 from scipy.signal import detrend
 
 from orchestrate import InputError, detect, read_record, record, signs
-from orchestrate.diagnosis.order_windows import sensor_channels, split_sweeps
+from orchestrate.diagnosis.order_windows import checked_sensor_channels, split_sweeps
 from orchestrate.diagnosis.undamaged import SoundStructure
 from orchestrate.diagnosis.wiring import WiringSettings, wiring_notes
 from orchestrate.laboratory.analysis.channels import Channels
@@ -33,7 +33,7 @@ def sweep(participation=1.3, seed=5, noise=0.01):
 
 
 def notes(channels, rate=RATE):
-    return wiring_notes(sensor_channels(record(sample_rate=rate, **channels)))
+    return wiring_notes(checked_sensor_channels(record(sample_rate=rate, **channels)))
 
 
 def lost(channels):
@@ -142,7 +142,7 @@ def test_notes_weigh_what_the_base_moves():
     (note,) = notes({**leaking, FACE: -leaking[FACE]}, 300.0)
     assert note.kind == "polarity"
     nowhere = WiringSettings(moves=1e9)
-    made = sensor_channels(record(sample_rate=300.0, **rising(lost=3)))
+    made = checked_sensor_channels(record(sample_rate=300.0, **rising(lost=3)))
     assert wiring_notes(made, nowhere) == []
 
 
@@ -213,7 +213,7 @@ def test_what_a_note_says_mends_the_record(tmp_path):
 
 
 def notes_of(path, options):
-    return wiring_notes(sensor_channels(read_record(path, **options)))
+    return wiring_notes(checked_sensor_channels(read_record(path, **options)))
 
 
 def test_sweeps_at_several_levels_are_split_at_pauses_and_at_jumps_of_the_frequency():

@@ -18,7 +18,7 @@ BASE, FACE = "box_acceleration", "acceleration1"
 def test_a_fit_needs_five_windows_below_seven_tenths_of_the_peak(highest, fitted):
     hertz = np.array([20.0, 22.0, 24.0, 26.0, highest, 40.0])
     response = np.where(hertz == 40.0, 9.0, 1.0).astype(complex)
-    assert (LowResponse.fitted(hertz, response, np.ones(6), WIRING) is not None) == fitted
+    assert (LowResponse.fit(hertz, response, np.ones(6), WIRING) is not None) == fitted
 
 
 @pytest.mark.parametrize("delay", [-0.011, 0.011])
@@ -27,7 +27,7 @@ def test_a_fit_knows_delays_of_many_milliseconds(delay):
     square = (hertz / 40.0) ** 2
     response = (1.0 + square / (1.02 - square)) * np.exp(-2j * np.pi * hertz * delay)
     response *= 1.0 + 0.05 * (-1.0) ** np.arange(36)
-    fits = [LowResponse.fitted(hertz, response, np.full(36, level), WIRING) for level in (1.0, 9.0)]
+    fits = [LowResponse.fit(hertz, response, np.full(36, level), WIRING) for level in (1.0, 9.0)]
     assert fits[0].delay == pytest.approx(delay, abs=1e-3)
     assert [fit.misfit for fit in fits] == pytest.approx([0.05, 0.05], rel=0.1)
 
@@ -38,7 +38,7 @@ def test_a_fit_knows_modes_of_any_size(mode):
     hertz = np.linspace(5.0, 40.0, 36)
     square = (hertz / 40.01) ** 2
     response = np.where(hertz < 30.0, -2.0 * (1.0 + mode * square / (1.0 - square)), 99.0 + 0j)
-    fit = LowResponse.fitted(hertz, response, np.ones(36), WIRING)
+    fit = LowResponse.fit(hertz, response, np.ones(36), WIRING)
     assert fit.factor == pytest.approx(-2.0, rel=0.005) and fit.misfit < 0.003
 
 
@@ -53,13 +53,13 @@ def test_a_fit_knows_modes_of_any_size(mode):
 def test_how_well_a_fit_describes_a_sensor(monkeypatch, straight, velocity, kinds):
     misfits = iter((1.0, 1.0, straight, velocity, 1.0))  # by the power of i w, from -2 on
     fits = lambda *given: LowResponse(10.0, -1.0, 0.0, next(misfits))  # noqa: E731
-    monkeypatch.setattr(LowResponse, "fitted", fits)
+    monkeypatch.setattr(LowResponse, "fit", fits)
     one = np.ones(6, complex)
     orders = SimpleNamespace(
         channels=SimpleNamespace(names=(FACE,)),
         amplitude=one[None, None],
         floor=np.zeros((1, 6)),
-        order=lambda number, name: one,
+        order_amplitudes=lambda number, name: one,
         windows=SimpleNamespace(frequency=np.linspace(10.0, 20.0, 6)),
         level=np.ones(6),
     )
@@ -166,8 +166,8 @@ def test_ten_samples_in_a_period_of_the_resonance_are_enough(monkeypatch, resona
     orders = record(np.zeros(20 * int(RATE)), np.full(20, 20.0))
     orders.resonance, orders.rows = resonance, ()
     orders.windows.is_tone = False
-    monkeypatch.setattr(wiring, "sine_windows", lambda channels: ())
-    monkeypatch.setattr(wiring, "assembled_orders", lambda channels: orders)
+    monkeypatch.setattr(wiring, "sine_windows_and_amplitudes", lambda channels: ())
+    monkeypatch.setattr(wiring, "orders_with_floors", lambda channels: orders)
     for name in ("clipped_notes", "lost_sample_notes", "hum_notes"):
         monkeypatch.setattr(wiring, name, lambda *given: ())
     kinds = [note.kind for note in wiring.wiring_notes(orders.channels)]
