@@ -99,7 +99,7 @@ class CurveData:
         return round(min(max(cycles, SETTLE_CYCLES[0]), SETTLE_CYCLES[1]))
 
     def evidence(self) -> CurveEvidence:
-        return curve_evidence(self, self.settle_cycles, SAMPLES_PER_PERIOD)
+        return build_curve_evidence(self, self.settle_cycles, SAMPLES_PER_PERIOD)
 
     def coarse_evidence(self) -> CurveEvidence:
         """Return the evidence of some points near the resonance, for a coarse search."""
@@ -110,7 +110,7 @@ class CurveData:
         some = self.select_points(near[:: math.ceil(len(near) / COARSE_POINTS)])
         chosen = some if len(some.frequency) >= FEWEST_POINTS else self
         settle = max(SETTLE_CYCLES[0], self.settle_cycles // 2)
-        return curve_evidence(chosen, settle, COARSE_SAMPLES)
+        return build_curve_evidence(chosen, settle, COARSE_SAMPLES)
 
     def select_points(self, points: NDArray[np.intp]) -> CurveData:
         """Return the curve with only the points of these indices."""
@@ -162,13 +162,14 @@ def half_power_damping(curve: xr.Dataset) -> float:
     return float((high - low) / (2.0 * frequency[top]))
 
 
-def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> CurveEvidence:
+def build_curve_evidence(data: CurveData, settle_cycles: int, samples: float) -> CurveEvidence:
     """Build the evidence of a curve: its orders, and the stepped sine that measured it."""
     ordered = sorted(zip(data.frequency, data.level, strict=True))
     frequencies = (data.frequency[0], *data.frequency)  # twice as long at the first
-    cycles = {"settle_cycles": settle, "measured_cycles": 10}  # to separate orders 0.5, 1, 1.37
+    # 10 cycles separate orders 0.5, 1, 1.37
+    cycles = {"settle_cycles": settle_cycles, "measured_cycles": 10}
     sine = SteppedSine(frequencies=frequencies, acceleration=tuple(ordered), **cycles)
-    rate = samples_per_period * max(data.frequency)
+    rate = samples * max(data.frequency)  # so many in a period
     time = np.arange(math.ceil(sine.duration * rate) + 2) / rate
     box = np.asarray(sine(time))
     # a curve has no samples of the faces

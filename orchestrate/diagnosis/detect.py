@@ -292,7 +292,7 @@ class DetectJob(SearchJob):
             **{
                 name: variable((), getattr(findings, of), *at) for name, (of, *at) in STATED.items()
             },
-            **record_variables(channels, whole.windows.frequency),
+            **sampling_variables(channels, whole.windows.frequency),
             "order2": variable("window", even.ratio, "1", "order 2 over order 1"),
             "order2_threshold": variable("window", even.threshold, "1", "size that counts as seen"),
         }
@@ -323,7 +323,7 @@ def assumed_halves(resonance: float, settings: Settings) -> Structure:
     return Structure.from_halves(m1=1.0, m2=1.0, f1=f1, f2=f2, zeta1=zeta, zeta2=zeta, e=e)
 
 
-def record_variables(channels: Channels, frequency: NDArray[np.float64]) -> dict[str, Variable]:
+def sampling_variables(channels: Channels, frequency: NDArray[np.float64]) -> dict[str, Variable]:
     """Return sampling rate, duration, and the frequencies over which the base moves as a sine."""
     rate, count = channels.sample_rate, len(channels.time)
     low, high = float(frequency.min()), float(frequency.max())

@@ -54,7 +54,7 @@ def checked_participation(given: Participation, sensors: Sequence[str]) -> tuple
     return tuple(PARTICIPATION.check(given[name]) if name in given else None for name in sensors)
 
 
-def cut_to_resonance(orders: RecordOrders) -> tuple[Channels, float]:
+def cut_channels_and_highest_frequency(orders: RecordOrders) -> tuple[Channels, float]:
     """Cut channels to the time around the resonance; return them and the highest frequency."""
     windows, channels = orders.windows, orders.channels
     ratio = windows.frequency / orders.resonance
@@ -87,7 +87,7 @@ class Evidence:
         settings: Settings = SETTINGS,
     ) -> Evidence:
         """Build the evidence from a whole record's orders: cut and decimate it where possible."""
-        channels, highest = cut_to_resonance(orders)
+        channels, highest = cut_channels_and_highest_frequency(orders)
         thin = decimate(channels, highest, samples_per_period)
         if thin is not orders.channels:
             orders = compute_orders(thin)

@@ -66,7 +66,7 @@ class Hypothesis(ABC):
     def reported_parameters(self, values: Values, evidence: Evidence) -> dict[str, float]:
         """Return the fitted numbers as physical parameters in SI, by the names of ``REPORTED``."""
 
-    def parameters(self, start: Values, evidence: Evidence) -> Parameters:
+    def lmfit_parameters(self, start: Values, evidence: Evidence) -> Parameters:
         """Convert a start to lmfit's parameters, clipped to the bounds."""
         from lmfit import Parameters
 

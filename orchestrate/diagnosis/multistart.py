@@ -87,7 +87,7 @@ class Search:
         hypothesis, bounds = self.hypothesis, self.hypothesis.bounds(self.evidence)
         minimizer = Minimizer(
             lambda parameters: self.residuals(parameters.valuesdict()).ravel(),
-            hypothesis.parameters(start, self.evidence),
+            hypothesis.lmfit_parameters(start, self.evidence),
         )
         settings = self.evidence.settings
         scales: Any = {"loss": "soft_l1", "f_scale": SOFT_LIMIT, "x_scale": "jac"}

@@ -75,15 +75,15 @@ class OrderWindows:
         longest = max(part.stop - part.start for part in self.parts) / self.sample_rate
         return float(np.ptp(self.frequency)) < 1.0 / longest
 
-    def select(self, windows: NDArray[np.intp], count: int) -> OrderWindows:
-        """Return these windows with the first ``count`` orders, contiguous for fast products."""
+    def select(self, windows: NDArray[np.intp], order_count: int) -> OrderWindows:
+        """Return these windows with the first orders only, contiguous for fast products."""
         return OrderWindows(
             self.time[windows],
             self.frequency[windows],
             self.rate[windows],
-            self.orders[:count],
+            self.orders[:order_count],
             tuple(self.parts[i] for i in windows),
-            tuple(np.ascontiguousarray(self.solutions[i][:, :count]) for i in windows),
+            tuple(np.ascontiguousarray(self.solutions[i][:, :order_count]) for i in windows),
             self.sample_rate,
             self.samples,
         )
@@ -291,23 +291,23 @@ def assemble_windows(channels: Channels, windows: list[Window]) -> OrderWindows:
     )
 
 
-def least_squares_matrix(one: Window, sample_rate: float) -> Complexes:
+def least_squares_matrix(window: Window, sample_rate: float) -> Complexes:
     """Compute the least-squares matrix of a window, shape (orders, samples)."""
     orders = np.array([*ORDERS, *OFF_ORDERS])
-    resolved = np.flatnonzero(orders * one.frequency <= NYQUIST * sample_rate)
-    waves = waves_of_orders(one.phase)
-    moving = one.offset * waves[[row for row in resolved if orders[row] % 1.0 == 0.0]]
+    resolved = np.flatnonzero(orders * window.frequency <= NYQUIST * sample_rate)
+    waves = waves_of_orders(window.phase)
+    moving = window.offset * waves[[row for row in resolved if orders[row] % 1.0 == 0.0]]
     waves = waves[resolved]
     parts = (waves.imag, waves.real, moving.imag, moving.real)
-    basis = np.concatenate([*parts, np.ones((1, len(one.offset)))])
-    weighted = basis * one.weights
+    basis = np.concatenate([*parts, np.ones((1, len(window.offset)))])
+    weighted = basis * window.weights
     # products as small as these wait for the threads of a BLAS, up to 20 times as long as they take
     normal = np.einsum("is,js->ij", weighted, basis)
     inverse = np.linalg.pinv(normal, hermitian=True)[: 2 * len(resolved)]
     sine, cosine = np.einsum("ij,js->is", inverse, weighted).reshape(2, len(resolved), -1)
-    found = np.full((len(orders), len(one.offset)), np.nan, dtype=complex)
-    found[resolved] = sine + 1j * cosine
-    return found
+    matrix = np.full((len(orders), len(window.offset)), np.nan, dtype=complex)
+    matrix[resolved] = sine + 1j * cosine
+    return matrix
 
 
 def waves_of_orders(phase: Floats) -> Complexes:
@@ -319,17 +319,17 @@ def waves_of_orders(phase: Floats) -> Complexes:
     return np.stack([first, second, third, half, first * off, second * off, third * off.conj()])
 
 
-def refer_to_base(box: Floats, one: Window, solution: Complexes) -> Complexes:
+def refer_to_base(box: Floats, window: Window, solution: Complexes) -> Complexes:
     """Refer the phases of a window's matrix to the base's own order 1."""
-    shift = np.angle(solution[0] @ box[one.part])
+    shift = np.angle(solution[0] @ box[window.part])
     turn = np.exp(-1j * np.array([*ORDERS, *OFF_ORDERS]) * shift)
     return np.ascontiguousarray((solution * turn[:, None]).T)
 
 
-def rms_without_order_1(box: Floats, one: Window, amplitude: Complexes) -> float:
+def rms_without_order_1(box: Floats, window: Window, amplitude: Complexes) -> float:
     """Return the weighted root mean square of the base's motion besides its order 1, m/s2."""
-    values = box[one.part] - np.average(box[one.part], weights=one.weights)
-    power = np.average(values**2, weights=one.weights)
+    values = box[window.part] - np.average(box[window.part], weights=window.weights)
+    power = np.average(values**2, weights=window.weights)
     return float(np.sqrt(max(power - 0.5 * abs(amplitude[0]) ** 2, 0.0)))
 
 

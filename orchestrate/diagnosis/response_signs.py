@@ -53,7 +53,7 @@ def response_signs(
     channels: Channels, swept: bool, periods: float, high_band: float | None
 ) -> ResponseSigns:
     """Compute the signs that one record has by itself, without comparison."""
-    own = signs_of_orders(channels, periods) if swept else signs_of_spectra(channels)
+    own = signs_of_orders(channels, periods) if swept else curve_and_noise_by_spectra(channels)
     edge = default_high_band_edge(channels, own.highest) if high_band is None else high_band
     moments = moment_signs_and_floors(channels, edge)
     loss, loss_floor = coherence_loss_and_floor(channels, own.noise)
@@ -68,7 +68,7 @@ def default_high_band_edge(channels: Channels, highest: float) -> float:
     return edge if edge >= 3.3 * highest else math.nan
 
 
-def is_swept(channels: Channels, periods: float) -> bool:
+def has_trackable_sine(channels: Channels, periods: float) -> bool:
     """Return whether the box moves as a sine whose orders can be tracked."""
     box = Channels(channels.time, channels.sample_rate, (BOX,), channels.box[None], channels.title)
     try:
@@ -154,7 +154,7 @@ def smooth_rate(rate: Floats) -> Floats:
 # -- any excitation -------------------------------------------------------------------------------
 
 
-def signs_of_spectra(channels: Channels) -> ResponseSigns:
+def curve_and_noise_by_spectra(channels: Channels) -> ResponseSigns:
     """Compute the response at the lines that the box excites, and the noise; without orders."""
     frequency, box, rows, cross = compute_spectra(channels)
     excited = excited_lines(frequency, box)

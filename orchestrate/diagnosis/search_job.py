@@ -214,7 +214,7 @@ class SearchJob(Job):
         rows = []
         for position, one in enumerate(made):
             with_errors = position >= count if worth else position in (0, best)  # may be stated
-            rows.append(self.hypothesis_result(one, player, with_errors))
+            rows.append(self.result_columns(one, player, with_errors))
             spent = previous["evaluations"][previous["place"] == position]
             rows[-1]["end_evaluations"] += spent.sum()
         return {name: np.stack([part[name] for part in rows])[np.newaxis] for name in rows[0]}
@@ -264,7 +264,7 @@ class SearchJob(Job):
 
         return sorted(solutions, key=penalised_misfit)
 
-    def hypothesis_result(
+    def result_columns(
         self, minima: tuple[Search, list[Solution]], player: Player, with_errors: bool = True
     ) -> dict[str, Any]:
         """Return the best solution of a hypothesis with its errors, residuals and fitted orders."""

@@ -25,7 +25,7 @@ from .order_windows import checked_sensor_channels
 from .response_signs import (
     MAX_EDGE,
     ResponseSigns,
-    is_swept,
+    has_trackable_sine,
     level_and_direction_differences,
     response_signs,
     sensor_difference_and_floor,
@@ -118,7 +118,7 @@ def signs(
         return signs_of_drive_run(record, others, times)
     length = checked_range("periods", periods, low=2.0, high=1e4)
     count = checked_integer("seeds", seeds, 1, 1000)
-    every = [reference_channels(one) for one in (record, *others)]
+    every = [channels_with_reference(one) for one in (record, *others)]
     reference = every[0].box_label
     names = checked_response_names(every)
     edge = high_band
@@ -126,7 +126,7 @@ def signs(
         highest = MAX_EDGE * every[0].sample_rate
         edge = checked_range("high_band", edge, "Hz", low=1e-9, high=highest)
     level = None if noise is None else checked_range("noise", noise, "m/s2", low=0.0)
-    swept = [is_swept(channels, length) for channels in every]
+    swept = [has_trackable_sine(channels, length) for channels in every]
     pairs = zip(every, swept, strict=True)
     own = [response_signs(channels, sine, length, edge) for channels, sine in pairs]
     noises = [one.noise if level is None else np.full(len(names), level) for one in own]
@@ -151,11 +151,11 @@ def signs(
         described["sound_from"] = "none: what excites the structure is unknown"
     answer = signs_dataset(every[0].title, names, values, floors, shown, times, described)
     return answer.assign(
-        frequency=peak_frequencies(own[0], names), **sound_variables(sound, noises[0])
+        frequency=peak_frequency_variable(own[0], names), **sound_variables(sound, noises[0])
     )
 
 
-def reference_channels(record: xr.Dataset) -> Channels:
+def channels_with_reference(record: xr.Dataset) -> Channels:
     """Return a record's channels; the force, or the first response, stands for a base without."""
     if not isinstance(getattr(record, "data_vars", None), Mapping) or BOX in record:
         return checked_sensor_channels(record)
@@ -263,7 +263,7 @@ def median_over_seeds(shown: Floats) -> Floats:
     return np.asarray(np.where(known, np.median(np.nan_to_num(shown), axis=0), np.nan))
 
 
-def peak_frequencies(own: ResponseSigns, names: Sequence[str]) -> Any:
+def peak_frequency_variable(own: ResponseSigns, names: Sequence[str]) -> Any:
     """Return the frequencies at which the orders are largest, Hz, as a variable."""
     unknown = np.full(len(names), np.nan)
     rows = np.stack([own.frequencies.get(name, unknown) for name in INDICATORS])

@@ -243,10 +243,10 @@ class LowResponse:
 # -- samples --------------------------------------------------------------------------------------
 
 
-def clipped_notes(channels: Channels, clipped: float, row: int = PLATEAU) -> Iterator[Note]:
+def clipped_notes(channels: Channels, clipped: float, plateau: int = PLATEAU) -> Iterator[Note]:
     """Yield notes on channels that are saturated, in long enough rows of samples."""
     for name, values in zip(channels.names, channels.values, strict=True):
-        if (share := clipped_share(values, row)) > clipped:
+        if (share := clipped_share(values, plateau)) > clipped:
             text = f"{SHORT_NAMES[name]} is saturated in {100.0 * share:.2g} % of its samples"
             yield Note("clipped", f"{text}: record it again with a wider range")
 
