@@ -42,9 +42,9 @@ from ..errors import InputError, StaleError, Terminated, VibroimpactError, print
 from ..model.spelling import closest_name, did_you_mean
 from ..version import __version__
 from . import diagnosis, dynamics, laboratory, pages, responses, weak_drive
-from .command import Command, explain
+from .command import Command, explain_parse_error
 from .grammar import with_option_names
-from .options import QUANTITIES, list_shipped_sets
+from .options import QUANTITIES, format_shipped_sets
 from .safe_output import safe_outputs
 
 COMMANDS: dict[str, type[Command]] = {
@@ -93,7 +93,7 @@ def __getattr__(name: str) -> cyclopts.App:
     """Return a command as cyclopts knows it; its function is imported then."""
     if name not in COMMANDS:
         raise AttributeError(name)
-    return COMMANDS[name].app()
+    return COMMANDS[name].cyclopts_app()
 
 
 def make_app() -> cyclopts.App:
@@ -111,10 +111,10 @@ def make_app() -> cyclopts.App:
     return app
 
 
-def epilogue(name: str) -> str:
+def help_epilogue(name: str) -> str:
     program = program_name()
     if name not in COMMANDS:
-        return EXAMPLES.format(program=program, sets=list_shipped_sets())
+        return EXAMPLES.format(program=program, sets=format_shipped_sets())
     command = COMMANDS[name]
     flags, examples = command.flags(), command.examples.replace("{program}", program)
     quantities = QUANTITIES if "--structure" in flags else ""
@@ -153,12 +153,12 @@ def parse_arguments(arguments: Sequence[str]) -> Command | None:
     except CycloptsError as error:
         if name not in COMMANDS:
             raise InputError(f"{name}: no option before a COMMAND {help_is_at}") from None
-        raise InputError(explain(error, COMMANDS[name])) from None
+        raise InputError(explain_parse_error(error, COMMANDS[name])) from None
     chosen = call(*bound.args, **bound.kwargs)
     if isinstance(chosen, Command):
         return chosen
     if "--version" not in words:
-        print(epilogue(name))
+        print(help_epilogue(name))
     return None
 
 
@@ -172,10 +172,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with safe_outputs() as output:
             code = run_command(sys.argv[1:] if arguments is None else arguments)
             output.flush()
-            if output.failure():
-                print_error(
-                    f"error: standard output: {output.failure()}; what was computed is stored"
-                )
+            if reason := output.failure_reason():
+                print_error(f"error: standard output: {reason}; what was computed is stored")
                 return code or FAILURE
             return code
     except KeyboardInterrupt as ended:  # before the command has begun, or as it goes
@@ -236,14 +234,16 @@ def describe_progress_kept() -> str:
 def print_warnings_in_one_line(chosen: Command) -> Iterator[None]:
     usual = warnings.showwarning
 
-    def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+    def show_in_one_line(
+        message: Warning | str, category: type[Warning], *place: Any, **more: Any
+    ) -> None:
         if category is UserWarning:
             print_error(f"warning: {with_option_names(str(message), chosen)}")
         else:
             usual(message, category, *place, **more)
 
     with warnings.catch_warnings():
-        warnings.showwarning = show
+        warnings.showwarning = show_in_one_line
         yield
 
 

@@ -15,10 +15,10 @@ from ..lazy import xr
 from ..model import Structure
 from ..units import ALIKE, Units, with_readable_lengths, with_units
 from .command import Command, Keywords, Options, option, option_names
-from .grammar import read_earlier_result
-from .notes import print_frequency_notes, trivial_notes
+from .grammar import load_earlier_result
+from .notes import print_and_warn_of_frequencies, trivial_notes
 from .options import UNITS
-from .output import Files, digest, result_name, write_unstored_netcdf
+from .output import ResultFiles, digest, result_name, write_unstored_netcdf
 from .printing import describe, impact_lines
 
 UNIT_OF_OPTION = {name: ALIKE.get(unit, unit) for name, unit in {**UNITS, "eta": "eta"}.items()}
@@ -40,27 +40,27 @@ class Only(Options):
     only: Literal["bonded", "delaminated"] | None = option("one of both (default: both)")
 
 
-class Asked(Command):
-    """A command that asks its public function and shows the result."""
+class FunctionCommand(Command):
+    """A command that calls a public function, prints a summary and writes files."""
 
     named = ""  # how the names of results begin, if not by the function
     stores = True  # whether the function itself writes the result
     shows = ""  # variables that are printed of a result
 
-    def ask(self) -> tuple[Any, ...]:
-        structure = self.read_structure()
-        excitation = self.read_excitation(structure, si=True, one=True)
-        return structure, {**self.keywords(), **excitation}
+    def read_question(self) -> tuple[Any, ...]:
+        structure = self.read_and_report_structure()
+        excitation = self.read_excitation(structure, needs_metres=True, one_frequency=True)
+        return structure, {**self.function_keywords(), **excitation}
 
-    def summary(self, data: Any) -> Iterable[str]:
+    def summary_lines(self, data: Any) -> Iterable[str]:
         yield from describe(data, self.shows)
         if "impact" in data.dims:
             yield from impact_lines(data)
 
-    def summaries(self, results: Runs) -> Iterator[str]:
+    def all_summary_lines(self, results: Runs) -> Iterator[str]:
         for state, data in results.items():
             yield from [f"{state}:"] if state else []
-            yield from self.summary(data)
+            yield from self.summary_lines(data)
 
     def has_picture(self, question: Keywords) -> bool:
         return True
@@ -68,13 +68,13 @@ class Asked(Command):
     def draw(self, results: Runs, question: Keywords, *over: xr.Dataset) -> Any:
         return orchestrate.plot(*[*results.values()][::-1], *over)
 
-    def source_names(self) -> list[str]:
+    def source_file_stems(self) -> list[str]:
         paths = (getattr(self, name, None) for name in ("drive", "structure", "start"))
         files = [Path(path).stem for path in paths if path and isinstance(path, (str, Path))]
         return list(dict.fromkeys(files))[:2] or ["paper"]
 
-    def states(self, structure: Any) -> dict[str, Any]:
-        """Return the structures that are asked about, by name; ``""`` for the one that is given."""
+    def structures_by_state(self, structure: Any) -> dict[str, Any]:
+        """Return the structures of the question, by name; ``""`` if there is one."""
         if not (getattr(self, "beside", False) or hasattr(self, "only")):
             return {"": structure}
         both = {"bonded": structure.as_bonded(), "delaminated": structure.as_delaminated()}
@@ -86,7 +86,11 @@ class Asked(Command):
         return {only: both[only]} if only else both
 
     def compute(
-        self, states: Mapping[str, Any], others: Any, question: Keywords, files: Mapping[str, Files]
+        self,
+        states: Mapping[str, Any],
+        others: Any,
+        question: Keywords,
+        files: Mapping[str, ResultFiles],
     ) -> dict[str, xr.Dataset]:
         function: Callable[..., xr.Dataset] = getattr(orchestrate, self.calls)
         return {
@@ -94,67 +98,74 @@ class Asked(Command):
                 structure,
                 *others,
                 **question,
-                **self.running(files[state].result if self.stores else None),
+                **self.running_keywords(files[state].result if self.stores else None),
             )
             for state, structure in states.items()
         }
 
     def __call__(self) -> None:
-        structure, *others, question = self.ask()
-        self.answer(structure, *others, question)
+        structure, *others, question = self.read_question()
+        self.compute_print_and_write(structure, *others, question)
 
-    def answer(self, structure: Any, *rest: Any, picture: bool = True) -> dict[str, xr.Dataset]:
+    def compute_print_and_write(
+        self, structure: Any, *rest: Any, picture: bool = True
+    ) -> dict[str, xr.Dataset]:
         """Compute results, print their summary, write files; return them."""
         *others, question = rest
-        states, branches = self.states(structure), self.read_overlay(structure, question)
+        states, branches = (
+            self.structures_by_state(structure),
+            self.read_overlay_branches(structure, question),
+        )
         over = f"over_{digest(*branches)}" if branches else ""
         asked, fresh = (structure, *others, question), None if self.stores else True
-        name = result_name(self.named or self.calls, self.source_names(), *asked)
+        name = result_name(self.named or self.calls, self.source_file_stems(), *asked)
         files = {}
         for state in states:
             word = re.sub(r"[^\w]", "-", f"_{state}" if state else "")
-            files[state] = Files.from_options(self, f"{name}{word}", over, fresh)
+            files[state] = ResultFiles.from_options(self, f"{name}{word}", over, fresh)
         picture = picture and self.has_picture(question)
         common = next(iter(files.values()))
         if len(files) > 1:
             fresh = any(one.fresh for one in files.values())
-            common = Files.from_options(self, name, over, fresh)
+            common = ResultFiles.from_options(self, name, over, fresh)
         alone = isinstance(structure, Structure) and not others
         if alone:
-            print_frequency_notes(self, structure, question)
+            print_and_warn_of_frequencies(self, structure, question)
         results = self.compute(states, others, question, files)
         chosen = self.display_units(question)
         in_units = {state: with_units(data, chosen) for state, data in results.items()}
         shown = dict(zip(in_units, with_readable_lengths(*in_units.values()), strict=True))
         notes = trivial_notes(structure, question, [*shown.values()][-1]) if alone else ()
-        print(*notes, *self.summaries(shown), sep="\n")
+        print(*notes, *self.all_summary_lines(shown), sep="\n")
         self.print_units_note(*shown.values())
         for state, data in in_units.items():
             if not self.stores:
                 write_unstored_netcdf(files[state], results[state])
-            files[state].write(data)
+            files[state].write_and_print_paths(data)
         if picture:
             common.write_pictures(partial(self.draw, shown, question, *branches))
-        self.write_more(common, question, shown, results)
+        self.write_further_files(common, question, shown, results)
         return results
 
-    def write_more(self, files: Files, question: Keywords, shown: Runs, results: Runs) -> None:
+    def write_further_files(
+        self, files: ResultFiles, question: Keywords, shown: Runs, results: Runs
+    ) -> None:
         """Write what a command has besides results and picture."""
 
-    def read_overlay(self, structure: Any, question: Keywords) -> list[xr.Dataset]:
+    def read_overlay_branches(self, structure: Any, question: Keywords) -> list[xr.Dataset]:
         paths = [Path(name) for text in getattr(self, "overlay", []) for name in text.split(",")]
         if not paths:
             return []
         from ..show.overlay import explain_border_mismatch, explain_mismatch
 
-        branches = [read_earlier_result("--overlay", path) for path in paths]
+        branches = [load_earlier_result("--overlay", path) for path in paths]
         parameters = structure.parameters()
         if self.calls == "map":
             both = {name for name, value in question.items() if isinstance(value, tuple)}
             explain = partial(explain_border_mismatch, over=both, parameters=parameters)
         elif "level" in question:
             raise InputError(f"--overlay: with several levels, --g {self.g}; expected one")
-        elif not is_curve(question):
+        elif not has_several_values(question):
             raise InputError("--overlay: one value has no picture; expected a range or a list")
         else:
             over = question.get("over") or ("eta" if "eta" in question else "frequency")
@@ -171,7 +182,7 @@ class Asked(Command):
         varied = str(getattr(self, "over", "")).replace(" ", "").split(",")  # two of a border
         given = [UNIT_OF_OPTION[name] for name in varied if name in UNIT_OF_OPTION]
         given += [unit for name, unit in UNIT_OF_OPTION.items() if getattr(self, name, None)]
-        keys = self.section("excitation") if "frequency" in question and not given else ()
+        keys = self.toml_section("excitation") if "frequency" in question and not given else ()
         words = [key.removeprefix("frequency_") for key in keys]
         given += [ALIKE.get(word, word) for word in words if word in (*UNITS.values(), "eta")]
         both = question.get("over") or ()  # of a border
@@ -181,6 +192,6 @@ class Asked(Command):
         return self.read_units().with_defaults(usual)
 
 
-def is_curve(question: Mapping[str, Any]) -> bool:
+def has_several_values(question: Mapping[str, Any]) -> bool:
     varied = (question.get(name) for name in VARIED)
     return any(len(values) > 1 for values in varied if isinstance(values, tuple))

@@ -56,7 +56,7 @@ MEANT = {  # for options of ours
     **{"--duration": "--periods", "--sine": "--swept-sine", "--sweep": "--swept-sine"},
 }
 OF_BOX = ("eta", "frequency", "amplitude", "level")
-READERS: dict[Any, Callable[[str, str], Any]] = {int: grammar.read_int, float: grammar.read_number}
+READERS: dict[Any, Callable[[str, str], Any]] = {int: grammar.read_int, float: grammar.parse_number}
 STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *grammar.SET_NAMES)
 Keywords = dict[str, Any]
 
@@ -76,18 +76,18 @@ class Option:
     usual: Any = None  # what is taken where it is not given, where that is not the default
 
     @property
-    def words(self) -> str:
+    def help_with_default(self) -> str:
         """The help, with the default where it does not say so."""
         usual = self.default if self.usual is None else self.usual
         said = usual in (None, False, (), "") or "default" in self.help
         return self.help if said else f"{self.help} (default: {usual})"
 
-    def parameter(self, attribute: str, kind: Any, group: cyclopts.Group) -> inspect.Parameter:
-        read, called = reader_of(kind)
+    def to_parameter(self, attribute: str, kind: Any, group: cyclopts.Group) -> inspect.Parameter:
+        read, called = reader_and_metavar(kind)
         flag = self.name or option_names([attribute])
         details = cyclopts.Parameter(
             name=None if self.position else (flag, self.also) if self.also else flag,
-            help=self.words,
+            help=self.help_with_default,
             metavar=self.value or called,
             group=group,
             negative=(),
@@ -96,7 +96,7 @@ class Option:
             required=self.needed,
             consume_multiple=self.many or None,
             allow_repeating=True,  # the last one counts
-            converter=converter(read) if read else None,
+            converter=cyclopts_converter(read) if read else None,
             n_tokens=1 if read else None,
         )
         return inspect.Parameter(
@@ -117,7 +117,7 @@ def option_names(names: Iterable[str], joint: str = ", ") -> str:
     return joint.join(f"--{name.replace('_', '-')}" for name in names)
 
 
-def reader_of(kind: Any) -> tuple[Callable[[str, str], Any] | None, str]:
+def reader_and_metavar(kind: Any) -> tuple[Callable[[str, str], Any] | None, str]:
     known, parts = {int: "N", float: "X", Path: "FILE"}, (kind, *typing.get_args(kind))
     called = next((known[one] for one in parts if one in known), "TEXT")
     for one in parts:
@@ -125,14 +125,14 @@ def reader_of(kind: Any) -> tuple[Callable[[str, str], Any] | None, str]:
             return next(read for read in typing.get_args(one) if inspect.isfunction(read)), "X"
         if typing.get_origin(one) is Literal:
             choices = typing.get_args(one)
-            read = functools.partial(grammar.read_choice, choices)
+            read = functools.partial(grammar.parse_choice, choices)
             return read, "{" + ",".join(map(str, choices)) + "}"
         if one in READERS:
             return READERS[one], called
     return None, called
 
 
-def converter(read: Callable[[str, str], Any]) -> Callable[..., Any]:
+def cyclopts_converter(read: Callable[[str, str], Any]) -> Callable[..., Any]:
     return lambda _, tokens: read(tokens[-1].keyword or "", tokens[-1].value)
 
 
@@ -154,7 +154,7 @@ class Options:
         def __getattr__(self, name: str) -> Any:
             """Options that come from functions, or from other groups."""
 
-    def one_of(self, *names: str) -> str | None:
+    def given_option(self, *names: str) -> str | None:
         """Return which of some options is given, None if none is; raise if several are."""
         given = [name for name in names if getattr(self, name) not in (None, False)]
         if len(given) > 1:
@@ -203,9 +203,11 @@ class Command(Options, ABC):
                     one = replace(one, default=False) if hints[name] is bool else one
                     found[name] = one, hints[name], found[name][2] if name in found else group
             takes = own.get("takes", "*" if own.get("calls") else "")
-            others = [name for name in arguments_read(cls.calls) if name not in found]
+            others = [name for name in readable_arguments(cls.calls) if name not in found]
             taken = takes.replace("*", " ".join(others)), cls.calls, own.get("if_given")
-            found |= {name: (one, kind, group) for name, one, kind in options_of_functions(*taken)}
+            found |= {
+                name: (one, kind, group) for name, one, kind in options_from_functions(*taken)
+            }
         return dict(sorted(found.items(), key=lambda row: vars(row[1][2]).get("rank", 2)))
 
     @classmethod
@@ -217,57 +219,57 @@ class Command(Options, ABC):
     def name(cls) -> str:
         return cyclopts.default_name_transform(cls.__name__)
 
-    def given(self, *groups: type[Options]) -> Keywords:
+    def given_options(self, *groups: type[Options]) -> Keywords:
         names = [name for name, (_, _, of) in self.options().items() if of in groups]
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
-    def needed(self, name: str, expected: str) -> Any:
+    def require(self, name: str, expected: str) -> Any:
         if (value := getattr(self, name)) is None:
             raise InputError(f"{option_names([name])} is missing{expected}")
         return value
 
-    def keywords(self) -> Keywords:
-        arguments = arguments_of(self.calls)
+    def function_keywords(self) -> Keywords:
+        arguments = is_needed_by_argument(self.calls)
         found: Keywords = {}
         for name, (one, kind, of) in self.options().items():
             if of is type(self) and name in arguments:
                 found[name] = getattr(self, name)
                 if arguments[name]:
-                    self.needed(name, f" ({one.help.removesuffix(NEEDED)})")
+                    self.require(name, f" ({one.help.removesuffix(NEEDED)})")
                 if kind is grammar.State and isinstance(found[name], Path):
-                    found[name] = grammar.read_earlier_result(option_names([name]), found[name])
+                    found[name] = grammar.load_earlier_result(option_names([name]), found[name])
         return found
 
     @classmethod
-    def app(cls) -> cyclopts.App:
+    def cyclopts_app(cls) -> cyclopts.App:
         groups: dict[str, cyclopts.Group] = {}
         parameters = []
         for name, (one, kind, of) in cls.options().items():
             heading, remark = (vars(of).get(key, "") for key in ("heading", "remark"))
             group = cyclopts.Group(heading or "question", help=remark, sort_key=len(groups))
-            parameters.append(one.parameter(name, kind, groups.setdefault(heading, group)))
+            parameters.append(one.to_parameter(name, kind, groups.setdefault(heading, group)))
         parameters.sort(key=lambda one: one.kind)
 
-        def make(*positions: Any, **values: Any) -> Command:
+        def make_command(*positions: Any, **values: Any) -> Command:
             names = [one.name for one in parameters]
             return cls(**dict(zip(names, positions, strict=False)), **values)
 
-        make.__annotations__ = {}  # only of the options' own names
-        make.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
-        return cyclopts.App(name=cls.name(), help=cls.__doc__, default_command=make)
+        make_command.__annotations__ = {}  # only of the options' own names
+        make_command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+        return cyclopts.App(name=cls.name(), help=cls.__doc__, default_command=make_command)
 
 
 # -- options from a public function ----------------------------------------------------------------
 
 
-def arguments_of(function: str) -> dict[str, bool]:
-    """Return the arguments of a public function or class, and whether each is needed."""
+def is_needed_by_argument(function: str) -> dict[str, bool]:
+    """Return of each argument of a public function or class whether it has no default."""
     parameters = inspect.signature(getattr(orchestrate, function)).parameters.values()
     return {one.name: one.default is inspect.Parameter.empty for one in parameters}
 
 
 @functools.cache
-def documentation_of(function: str) -> dict[str, tuple[str, str]]:
+def types_and_meanings(function: str) -> dict[str, tuple[str, str]]:
     import docstring_parser
 
     from ..running.options import Running
@@ -278,16 +280,16 @@ def documentation_of(function: str) -> dict[str, tuple[str, str]]:
         for name in one.arg_name.split(", "):
             meaning = " ".join((one.description or "").split())
             linked = LINK.match(meaning)
-            there = documentation_of(linked[1]) if linked else {}
+            there = types_and_meanings(linked[1]) if linked else {}
             found[name] = there.get(name, (one.type_name or "", meaning))
     return found
 
 
 @functools.cache
-def arguments_read(function: str) -> list[str]:
+def readable_arguments(function: str) -> list[str]:
     if not function:
         return []
-    typed = documentation_of(function)
+    typed = types_and_meanings(function)
     arguments = inspect.signature(getattr(orchestrate, function)).parameters.values()
     return [
         one.name
@@ -300,7 +302,7 @@ def arguments_read(function: str) -> list[str]:
     ]
 
 
-def options_of_functions(
+def options_from_functions(
     takes: str, usual_function: str, if_given: bool | None
 ) -> Iterator[tuple[str, Option, Any]]:
     for part in filter(None, takes.split("; ")):
@@ -308,7 +310,7 @@ def options_of_functions(
         function = function or usual_function
         of = None if function == RUNNING else inspect.signature(getattr(orchestrate, function))
         for name in names.split():
-            typed, meaning = documentation_of(function)[name]
+            typed, meaning = types_and_meanings(function)[name]
             known = (DOCUMENTED[one] for one in DOCUMENTED if typed.startswith(one))
             kind, value = next(known, (None, ""))
             if typed.startswith("{"):
@@ -337,13 +339,15 @@ def help_text(meaning: str) -> str:
 # -- mistakes --------------------------------------------------------------------------------------
 
 
-def explain(error: exceptions.CycloptsError, command: type[Command]) -> str:
+def explain_parse_error(error: exceptions.CycloptsError, command: type[Command]) -> str:
     lists = f"({command.name()} --help lists them)"
     if isinstance(error.__cause__, InputError):
         return str(error.__cause__)
     if isinstance(error, exceptions.UnknownOptionError):
         flag = (error.token.keyword or error.token.value).partition("=")[0]
-        return f"{flag}: no option of {command.name()}{suggestion(flag, error, command)} {lists}"
+        return (
+            f"{flag}: no option of {command.name()}{suggest_option(flag, error, command)} {lists}"
+        )
     if isinstance(error, exceptions.UnusedCliTokensError):
         from ..model.toml_files import SETS
 
@@ -357,7 +361,7 @@ def explain(error: exceptions.CycloptsError, command: type[Command]) -> str:
     return " ".join(str(error).split())
 
 
-def suggestion(flag: str, error: exceptions.UnknownOptionError, command: type[Command]) -> str:
+def suggest_option(flag: str, error: exceptions.UnknownOptionError, command: type[Command]) -> str:
     name = flag.lstrip("-").replace("-", "_")
     if name in STRUCTURE_NAMES and "--set" in command.flags():
         words = " ".join(error.root_input_tokens or []).replace(f"{flag}=", f"{flag} ").split(" ")

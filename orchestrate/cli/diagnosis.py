@@ -15,10 +15,10 @@ from ..lazy import xr
 from ..model import Structure
 from ..units import Units, with_units
 from . import grammar, output, printing
-from .answer import Asked
+from .answer import FunctionCommand
 from .command import Command, Keywords, Options, option
 from .options import OfSensors, OfStructure
-from .output import Files, Reading, digest, file_checksum, unit_note
+from .output import Reading, ResultFiles, digest, file_checksum, unit_override_note
 
 log = logging.getLogger(__name__)
 RECOMMENDED = (  # variables of a plan
@@ -47,7 +47,7 @@ class Sweep(NamedTuple):
 
 
 EXPECTED = "a factor for face 1, or for both faces, such as 1.57 or 0.53,0.6"
-Participation = Annotated[tuple[float, ...] | None, grammar.floats(EXPECTED, ",", (1, 2))]
+Participation = Annotated[tuple[float, ...] | None, grammar.numbers_reader(EXPECTED, ",", (1, 2))]
 
 
 class DiagnosedRecords(Options):
@@ -100,15 +100,15 @@ what it gives:
   and for each record a report to read, print and sign (.html), the answers (.nc), a picture"""
 
     def __call__(self) -> None:
-        Files.from_options(self, "", fresh=True)  # before records are read
+        ResultFiles.from_options(self, "", fresh=True)  # before records are read
         if self.structure is None and self.set:
             raise InputError("--set: of a guess; expected --structure FILE.toml with it")
-        guess = None if self.structure is None else self.read_structure()
-        others = [self.read_one_record(path) for path in self.other]
+        guess = None if self.structure is None else self.read_and_report_structure()
+        others = [self.read_record_with_face(path) for path in self.other]
         if others and len(self.records) > 1:
             raise InputError("--other: of one beam; expected one record with it")
         log.info("reading %s", ", ".join(path.name for path in self.records))
-        records, refused = self.read_all_records()
+        records, refused = self.read_sweeps_and_refusals()
         names = {one: self.file_stem(one, guess) for one in records}
         verdicts = self.compute_verdicts(records, names, guess, others) if records else {}
         for sweep, verdict in verdicts.items():
@@ -124,12 +124,12 @@ what it gives:
 
     def file_stem(self, sweep: Sweep, guess: Structure | None) -> str:
         """Return the name of a record's results, unique for content, guess and reading."""
-        read_as = [self.channels, self.participation, *self.given(Reading).items()]
+        read_as = [self.channels, self.participation, *self.given_options(Reading).items()]
         checksums = [file_checksum(path) for path in (sweep.path, *self.other)]
         number = f"_sweep{sweep.number}" if sweep.number else ""
         return f"diagnose_{sweep.path.stem}{number}_{digest(checksums, guess, read_as)}"
 
-    def read_all_records(self) -> tuple[dict[Sweep, xr.Dataset], list[str]]:
+    def read_sweeps_and_refusals(self) -> tuple[dict[Sweep, xr.Dataset], list[str]]:
         from ..diagnosis.fit import checked_record_data
         from ..diagnosis.order_windows import split_sweeps
 
@@ -138,7 +138,7 @@ what it gives:
         paths = list(dict.fromkeys(self.records))
         for path in paths:
             try:
-                record = self.read_one_record(path)
+                record = self.read_record_with_face(path)
                 checked_record_data(record)
                 parts = split_sweeps(record)
                 several = len(parts) > 1
@@ -150,8 +150,8 @@ what it gives:
             raise InputError(refused[0])
         return records, refused
 
-    def read_one_record(self, path: Path) -> xr.Dataset:
-        record = orchestrate.read_record(path, **self.given(Reading))
+    def read_record_with_face(self, path: Path) -> xr.Dataset:
+        record = orchestrate.read_record(path, **self.given_options(Reading))
         if "acceleration1" not in record and "acceleration2" not in record:
             taken = record.attrs.get("columns", "no columns")
             text = "expected a face's too: name its column by --channels, as base=Table,face1=Beam"
@@ -172,7 +172,7 @@ what it gives:
             {names[sweep]: [record, *others] for sweep, record in records.items()},
             guess,
             participation=factors or None,
-            **self.running(self.output),
+            **self.running_keywords(self.output),
         )
         described = {}
         for sweep, name in names.items():
@@ -182,7 +182,7 @@ what it gives:
             words["title"] = f"Verdict on {label}: {verdict.verdict.item()}"
             described[sweep] = verdict.assign_attrs(words)
             if not words.items() <= verdict.attrs.items():
-                files = Files.from_options(self, name, fresh=True)
+                files = ResultFiles.from_options(self, name, fresh=True)
                 output.write_unstored_netcdf(files, described[sweep])
         return described
 
@@ -190,7 +190,10 @@ what it gives:
         told = ("columns", "unit", "converted", "time_base")
         words = {f"record_{name}": record.attrs.get(name, "") for name in told}
         words |= {"record_file": path.name, "record_sha256": file_checksum(path)}
-        words |= {"record_unit_note": unit_note(record.attrs), "command": self.command_line}
+        words |= {
+            "record_unit_note": unit_override_note(record.attrs),
+            "command": self.command_line,
+        }
         words |= {"sensors": record.attrs.get("sensors", "")}
         words |= {"guess_file": str(self.structure or "")}
         return {name: text for name, text in words.items() if text}
@@ -198,11 +201,11 @@ what it gives:
     def write_files(self, stem: str, answers: dict[str, xr.Dataset]) -> None:
         units = self.read_record_units()
         for ending, answer in answers.items():
-            files = Files.from_options(self, f"{stem}{ending}", fresh=True)
+            files = ResultFiles.from_options(self, f"{stem}{ending}", fresh=True)
             if ending:  # the verdict is stored already
                 output.write_unstored_netcdf(files, answer)
             shown = with_units(answer, units)
-            files.write(shown, partial(orchestrate.plot, shown))
+            files.write_and_print_paths(shown, partial(orchestrate.plot, shown))
         page = self.output / f"{stem}.html"
         more: Any = {"output": page, "notes": self.notes or "", "units": units}
         print(orchestrate.report(*answers.values(), **more))
@@ -217,10 +220,10 @@ what it gives:
                 yield f"  {label}: {grammar.with_option_names(verdict.attrs[name], self)}"
 
 
-PlanEnds = Annotated[Any, grammar.floats("FIRST:LAST in Hz, such as 30:60", "[:,]", (2,))]
+PlanEnds = Annotated[Any, grammar.numbers_reader("FIRST:LAST in Hz, such as 30:60", "[:,]", (2,))]
 
 
-class Plan(OfStructure, OfSensors, Asked, output.Results):
+class Plan(OfStructure, OfSensors, FunctionCommand, output.Results):
     """Plan a test: rehearse it, and recommend the lowest level at which the verdict is right."""
 
     calls, named, stores = "plan_test", "plan", False
@@ -239,8 +242,8 @@ class Plan(OfStructure, OfSensors, Asked, output.Results):
   {program} plan --structure beam.toml --faces 1 --noise 1e-3
 The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s2)/sqrt(Hz)."""
 
-    def ask(self) -> tuple[Structure, Keywords]:
-        structure = self.read_structure()
+    def read_question(self) -> tuple[Structure, Keywords]:
+        structure = self.read_and_report_structure()
         from ..diagnosis.plan_test import USUAL_NOISE, default_sensor, default_sweep_range
 
         last = (self.hz or default_sweep_range(structure))[-1]
@@ -249,12 +252,12 @@ The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s
         sensor: Any = self.read_sensor(partial(default_sensor, last))
         if self.faces in ("1", "2"):
             sensor = {f"acceleration{self.faces}": sensor or default_sensor(last)}
-        return structure, {**self.keywords(), "frequencies": self.hz, "sensor": sensor}
+        return structure, {**self.function_keywords(), "frequencies": self.hz, "sensor": sensor}
 
     def display_units(self, question: Keywords) -> Units:
         return self.read_units().with_defaults(Units("Hz", acceleration="g"))
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         yield from printing.describe(data, RECOMMENDED)
         if data.recommended_rate.notnull():
             yield f"recommended sampling: {float(data.recommended_rate):.0f} samples a second"
@@ -268,4 +271,4 @@ The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s
             yield "faces that touch open at every level; try pressed ones too: --set preload=20um"
         rows = printing.columns_of(data, "level verdict sound_verdict opening overload", form=".3g")
         titles = {"verdict": "verdict on the guess", "sound_verdict": "on its sound twin"}
-        yield from printing.table({titles.get(title, title): rows[title] for title in rows})
+        yield from printing.table_lines({titles.get(title, title): rows[title] for title in rows})

@@ -16,10 +16,10 @@ from ..lazy import xr
 from ..model import Drive, Structure
 from ..model.drive import motor_constant_and_resistance
 from ..units import Units
-from .answer import Asked, Runs
+from .answer import FunctionCommand, Runs
 from .command import Keywords, Options, option, option_names
-from .grammar import Positive, parse_changes, parse_ends, parse_number_or_ends, parse_rate
-from .notes import warn_of_voltage
+from .grammar import Positive, parse_changes, parse_ends, parse_number_or_ends, parse_single_rate
+from .notes import warn_of_unusual_voltage
 from .options import Over, print_assumptions
 
 if TYPE_CHECKING:
@@ -73,13 +73,13 @@ class OfMotor(Options):
             )
         changes, of_drive = parse_changes(self.set), {field.name for field in fields(Drive)}
         motor = {name: float(changes.pop(name)) for name in list(changes) if name in of_drive}
-        motor |= self.read_datasheet(motor)
-        require_masses(source, changes)
+        motor |= self.motor_from_datasheet(motor)
+        require_masses_with_frequencies(source, changes)
         changed = structure.replace(**changes)
         print_assumptions(changed, source, changes)
         return changed, drive.replace(**motor)
 
-    def read_datasheet(self, changes: Mapping[str, float]) -> dict[str, float]:
+    def motor_from_datasheet(self, changes: Mapping[str, float]) -> dict[str, float]:
         """Return motor constant and resistance from the datasheet's options; empty without them."""
         given = {name: getattr(self, name) for name in DATASHEET if getattr(self, name) is not None}
         names = "motor_constant", "armature_resistance"
@@ -127,13 +127,13 @@ class OfRamp(Options):
         from ..weak_drive.couple import require_motor
         from ..weak_drive.couple_all import default_eta0_range
 
-        self.one_of("eta0", "voltage")
+        self.given_option("eta0", "voltage")
         require_motor(structure, drive)
         volts = drive.volts(structure)
         for name, unit in (("voltage", 1.0), ("eta0", volts)):
             if text := getattr(self, name):
                 given = tuple(unit * one for one in parse_number_or_ends(f"--{name}", text))
-                warn_of_voltage(f"--{name} {text}", given, volts)
+                warn_of_unusual_voltage(f"--{name} {text}", given, volts)
                 if abs(given[-1]) < abs(given[0]):
                     print(f"--{name} {text}: the voltage falls first, and rises when it comes back")
                 return given
@@ -175,12 +175,12 @@ class OfSchedule(OfRamp):
         value="TIME",
     )
 
-    def ramp_rate(self, structure: Structure, drive: Drive) -> float:
-        self.one_of("rate", "volt_rate")
+    def parse_ramp_rate(self, structure: Structure, drive: Drive) -> float:
+        self.given_option("rate", "volt_rate")
         if self.volt_rate is not None:
-            return parse_rate("--volt-rate", self.volt_rate)
+            return parse_single_rate("--volt-rate", self.volt_rate)
         usual = USUAL.get(self.drive, ("", RATE))[1]
-        rate = usual if self.rate is None else parse_rate("--rate", self.rate)
+        rate = usual if self.rate is None else parse_single_rate("--rate", self.rate)
         return drive.volts(structure) * structure.omega * rate
 
     def make_schedule(
@@ -191,7 +191,7 @@ class OfSchedule(OfRamp):
 
         if self.course:
             for name in ("eta0", "voltage", "duration"):
-                self.one_of("course", name)
+                self.given_option("course", name)
             return Course.from_csv(self.course)
         ends = self.parse_voltages(structure, drive)
         if (len(ends) == 1) != (self.duration is not None):
@@ -204,7 +204,7 @@ class OfSchedule(OfRamp):
             drive,
             ends if len(ends) == 2 else ends[0],
             self.duration,
-            rate=self.ramp_rate(structure, drive),
+            rate=self.parse_ramp_rate(structure, drive),
             settle=self.settle / structure.omega,
             increment=self.increment * drive.volts(structure),
             back=not self.one_way,
@@ -233,8 +233,8 @@ class OfController(Options):
         from ..weak_drive import own_resonance
         from ..weak_drive.couple import require_motor
 
-        chosen = self.one_of(*CONTROLS) or ""
-        given = self.given(OfController)
+        chosen = self.given_option(*CONTROLS) or ""
+        given = self.given_options(OfController)
         owners = {name: [control] for control, names in CONTROLS.items() for name in names}
         self.refuse_without(owners, [chosen])
         own = {name.removeprefix("speed_"): given[name] for name in given if name not in CONTROLS}
@@ -251,7 +251,7 @@ class OfController(Options):
         return None
 
 
-def require_masses(source: str, changes: Mapping[str, Any]) -> None:
+def require_masses_with_frequencies(source: str, changes: Mapping[str, Any]) -> None:
     """Raise if a beam's frequencies are set but its masses are not: the motor feels them."""
     unknown = {"m1", "m2"} - changes.keys() - ({"m2"} if "mu" in changes else set())
     named = next((name for name in ("f1", "f2") if name in changes), None)
@@ -262,14 +262,14 @@ def require_masses(source: str, changes: Mapping[str, Any]) -> None:
         )
 
 
-class Driven(OfMotor, Asked):
+class DriveCommand(OfMotor, FunctionCommand):
     """A command on a structure with its motor, in a picture with a title of its own."""
 
     def picture_title(self, results: Runs) -> str:
         from ..show.labels import title_from_attributes
 
         structure = title_from_attributes(list(results.values())[-1])  # delaminated, if it is there
-        return f"{', '.join(self.source_names())}: {structure}"
+        return f"{', '.join(self.source_file_stems())}: {structure}"
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         if not self.drive:  # spectra without a motor
@@ -282,10 +282,10 @@ class Driven(OfMotor, Asked):
             return super().display_units(question)
         return self.read_units().with_defaults(Units("rpm" if self.no_load_rpm else ""))
 
-    def ask(self) -> tuple[Any, ...]:
+    def read_question(self) -> tuple[Any, ...]:
         structure, drive = self.read_structure_and_drive()
         times = [name for name in ("step", "hold") if name in self.options()]
-        question = {**self.keywords(), **self.in_seconds(structure, *times)}
+        question = {**self.function_keywords(), **self.options_in_seconds(structure, *times)}
         if isinstance(self, OfController):
             question["control"] = self.make_controller(structure, drive)
         if isinstance(self, OfSchedule):
@@ -298,7 +298,7 @@ class Driven(OfMotor, Asked):
             question | (self.over_arguments() if isinstance(self, Over) else {}),
         )
 
-    def in_seconds(self, structure: Structure, *names: str) -> Keywords:
+    def options_in_seconds(self, structure: Structure, *names: str) -> Keywords:
         """Return options in 1/omega, such as ``--step``, in s; None where they are not given."""
         times = {name: getattr(self, name) for name in names}
         return {n: None if time is None else time / structure.omega for n, time in times.items()}

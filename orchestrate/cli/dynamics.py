@@ -24,14 +24,22 @@ from ..units import (
     with_units,
 )
 from . import printing
-from .answer import Asked, Runs, is_curve
+from .answer import FunctionCommand, Runs, has_several_values
 from .command import Keywords, option
-from .grammar import plain_int, positive_number, reads
-from .options import CONTINUED, OfBox, OfPushes, OfStored, OfStructure, Over, parse_varied
-from .output import Files, Results, Stored, result_name
+from .grammar import make_reader, parse_plain_int, parse_positive_number
+from .options import (
+    CONTINUED,
+    OfBox,
+    OfPushes,
+    OfStored,
+    OfStructure,
+    Over,
+    parse_continued_parameter,
+)
+from .output import ResultFiles, Results, Stored, result_name
 
 
-class Lyapunov(OfStructure, OfBox, Over, Asked, Stored, Results):
+class Lyapunov(OfStructure, OfBox, Over, FunctionCommand, Stored, Results):
     """Largest Lyapunov exponents of responses: periodic, neutral or chaotic."""
 
     calls = "lyapunov"
@@ -44,27 +52,27 @@ class Lyapunov(OfStructure, OfBox, Over, Asked, Stored, Results):
   {program} lyapunov --structure beam --hz 12.5,16.7 --amplitude 1e-4
 Chaotic, periodic: the exponent is three standard errors from zero. Neutral: quasi-periodic, or not
 decided with so few --periods."""
-    has_picture = staticmethod(is_curve)
+    has_picture = staticmethod(has_several_values)
 
-    def ask(self) -> tuple[Structure, Keywords]:
-        structure, question = self.ask_along_parameter()
+    def read_question(self) -> tuple[Structure, Keywords]:
+        structure, question = self.read_question_along_parameter()
         if self.follow:
-            others = self.keywords()
+            others = self.function_keywords()
             swept: Keywords = {name: question[name] for name in question if name not in others}
             swept |= {"direction": self.follow, "samples": 1, "transient": question["transient"]}
-            question["start"] = orchestrate.sweep(structure, **swept, **self.running())
+            question["start"] = orchestrate.sweep(structure, **swept, **self.running_keywords())
         return structure, question
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         spectrum = " exponents:.5g kaplan_yorke_dimension" * ("exponents" in data)
-        name = printing.varied_parameter(data)
+        name = printing.varied_parameter_name(data)
         rows = data.sortby("exponent", ascending=False).transpose(name, ...)
         shown = f"{name} exponent standard_error verdict{spectrum}"
-        yield from printing.table(printing.columns_of(rows, shown), printing.MOST_ROWS)
+        yield from printing.table_lines(printing.columns_of(rows, shown), printing.MOST_ROWS)
         if data.sizes[name] > printing.MOST_ROWS:
             yield "the largest is biased by its error: repeat it, with another --transient"
-        yield from printing.counts(data, data.verdict)
-        neutral = data.isel({name: printing.has_flag(data.verdict, "neutral").values})
+        yield from printing.count_lines(data, data.verdict)
+        neutral = data.isel({name: printing.flag_mask(data.verdict, "neutral").values})
         sizes = (abs(neutral.exponent) * neutral.period).values
         wander = math.log(float(data.attrs["wander"]))
         needed = max((wander / size for size in sizes if size > 0.0), default=0.0)
@@ -75,7 +83,7 @@ decided with so few --periods."""
             )
 
 
-class Poincare(OfStructure, OfBox, Asked, Stored, Results):
+class Poincare(OfStructure, OfBox, FunctionCommand, Stored, Results):
     """A Poincaré section: states at a phase of the box, at impacts or at releases."""
 
     calls, shows = "poincare", "x_rel v_rel phase impact_velocity v1"
@@ -84,12 +92,12 @@ class Poincare(OfStructure, OfBox, Asked, Stored, Results):
   {program} poincare --eta 0.8 --at impacts
   {program} poincare --structure beam --hz 12.5 --g 0.02 --at releases"""
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         yield f"{data.sizes['point']} points"
-        yield from super().summary(data)
+        yield from super().summary_lines(data)
 
 
-def motion_of(data: xr.Dataset, state: xr.DataArray, periods: int) -> xr.Dataset:
+def simulate_from_state(data: xr.Dataset, state: xr.DataArray, periods: int) -> xr.Dataset:
     """Simulate the motion that begins at a state of a result, under its excitation."""
     varied = {name: data[name].item() for name in PARAMETERS if name in data.coords}
     structure = Structure.from_attributes(data.attrs).replace(**varied)
@@ -99,7 +107,7 @@ def motion_of(data: xr.Dataset, state: xr.DataArray, periods: int) -> xr.Dataset
     return with_units(motion, display_units_of(data))
 
 
-def attractor_table(data: xr.Dataset, over: str = "") -> Iterator[str]:
+def attractor_table_lines(data: xr.Dataset, over: str = "") -> Iterator[str]:
     """Yield a table of attractors: share, period, impacts, how decided, largest gap, a state."""
     rows = data.stack(row=(*filter(None, [over]), "attractor"), create_index=False)
     rows = rows.isel(row=rows.multiplicity.notnull().values).transpose("row", ...)
@@ -109,10 +117,10 @@ def attractor_table(data: xr.Dataset, over: str = "") -> Iterator[str]:
     columns["largest gap"] = [printing.format_largest_gap(part) for part in parts]
     in_si = " (SI)" * (not shows_lengths_as_ratios(data))
     (columns[f"state at phase 0{in_si}"],) = printing.columns_of(rows, "state").values()
-    yield from printing.table(columns)
+    yield from printing.table_lines(columns)
 
 
-class Attractors(OfStructure, OfBox, Over, Asked, Stored, Results):
+class Attractors(OfStructure, OfBox, Over, FunctionCommand, Stored, Results):
     """Coexisting motions: how many, and how many random starts lead to each."""
 
     calls, takes = "attractors", "* scale"
@@ -124,39 +132,43 @@ Half of the starts lie around zero, half around the response from rest. Every mo
 value is carried to its neighbours, so along a range it is found as far as it exists; random starts
 alone may miss one whose basin is small."""
 
-    def ask(self) -> tuple[Structure, Keywords]:
-        return self.ask_along_parameter(si=True)  # states are printed in m and m/s
+    def read_question(self) -> tuple[Structure, Keywords]:
+        return self.read_question_along_parameter(
+            needs_metres=True
+        )  # states are printed in m and m/s
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
-        name = printing.varied_parameter(data)
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
+        name = printing.varied_parameter_name(data)
         yield f"{data.sizes['start']} random starts at each value; attractors found:"
-        yield from printing.counts(data, data.number)
+        yield from printing.count_lines(data, data.number)
         if data.sizes[name] <= 5:  # values up to which every attractor is printed
-            yield from attractor_table(data, name)
+            yield from attractor_table_lines(data, name)
             yield "few starts overlook small basins: basin, or a range of values, finds them"
             return
         shares = data.share.where(data.multiplicity.notnull())
         shown = data.assign(least_share=shares.min(name), largest_share=shares.max(name))
-        columns = printing.rows_of(shown, "least_share:.1% largest_share:.1%")
+        columns = printing.stacked_columns_of(shown, "least_share:.1% largest_share:.1%")
         ends = zip(data.first_found.values.flat, data.last_found.values.flat, strict=True)
         found = [printing.format_range(data, name, *pair) for pair in ends]
-        yield from printing.table({**columns, "found at": found})
+        yield from printing.table_lines({**columns, "found at": found})
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         from ..show.planes import draw_motions
 
         data = results[""]
-        name = printing.varied_parameter(data)
+        name = printing.varied_parameter_name(data)
         if data.sizes[name] > 1:
             return orchestrate.plot(data)
         at = data.isel({name: 0})
         at = at.isel(attractor=at.multiplicity.notnull().values)
         periods = at.multiplicity.astype(int).where(at.multiplicity > 0, 60)  # irregular: 60
         pairs = zip(at.state, periods.values, strict=True)
-        return draw_motions(at, [motion_of(at, state, int(count)) for state, count in pairs])
+        return draw_motions(
+            at, [simulate_from_state(at, state, int(count)) for state, count in pairs]
+        )
 
 
-class Basin(OfStructure, OfBox, Asked, Stored, Results):
+class Basin(OfStructure, OfBox, FunctionCommand, Stored, Results):
     """Basins of attraction: which motion each start of a plane leads to."""
 
     calls = "basin"
@@ -168,7 +180,7 @@ class Basin(OfStructure, OfBox, Asked, Stored, Results):
 Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not varied is that of
 --at, such as a state that the command attractors has found."""
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         labels = data.attractor_of.values
         started, overlapping = int((labels >= 0).sum()), int((labels < 0).sum())
         axes = [data[name] for name in data.attractor_of.dims]
@@ -178,7 +190,7 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
             for a, end in zip(axes, ends, strict=True)
         ]
         yield f"{data.sizes['attractor']} found, of {started} starts in {', '.join(sides)}"
-        yield from attractor_table(data)
+        yield from attractor_table_lines(data)
         if overlapping:
             yield f"{overlapping} starts left out: there the masses would overlap"
         if data.sizes["attractor"] > 1 and min(labels.shape) >= 32:  # along a side, for entropies
@@ -189,7 +201,7 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
             )
             exponent, error = mixed.uncertainty_exponent, mixed.uncertainty_exponent_error
             if math.isfinite(exponent):
-                (words,) = printing.with_error(exponent, error, ".3g")
+                (words,) = printing.format_with_errors(exponent, error, ".3g")
                 yield f"uncertainty exponent {words} (1: smooth boundaries)"
 
 
@@ -199,7 +211,7 @@ def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:
     return f"{flag_word(orbit.stability)} orbit, {title_from_attributes(motion)}"
 
 
-class Orbit(OfStructure, OfBox, Asked, Stored, Results):
+class Orbit(OfStructure, OfBox, FunctionCommand, Stored, Results):
     """A periodic motion by Newton's method, stable or unstable, with its multipliers."""
 
     calls = "orbit"
@@ -212,26 +224,26 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle."""
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         data = results[""]
-        motion = motion_of(data, data.state.isel(sample=0), int(data.attrs["period"]))
+        motion = simulate_from_state(data, data.state.isel(sample=0), int(data.attrs["period"]))
         return orchestrate.plot(motion, title=orbit_title(data, motion))
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         parts = data.multipliers.transpose("multiplier", "part").values
         size = max(abs(complex(*pair)) for pair in parts)
         word = flag_word(data.stability)
         yield f"{word}: the largest multiplier has the absolute value {size:.6f}"
-        yield from printing.hints([f"stability: {word}"])
+        yield from printing.hint_lines([f"stability: {word}"])
         yield "multipliers " + ", ".join(f"{real:.6f}{other:+.6f}i" for real, other in parts)
         for time, speed in zip(data.impact_time.values, data.impact_velocity.values, strict=True):
             if math.isfinite(time):
                 closing = format_quantity(data, speed, "m/s")
-                yield f"impact at {printing.time_text(data, time, '.8g')}, closing at {closing}"
+                yield f"impact at {printing.format_time(data, time, '.8g')}, closing at {closing}"
         periods, states = printing.columns_of(data, "sample state", form=".8g").values()
-        yield from printing.table({"period": periods, "state at phase 0": states})
+        yield from printing.table_lines({"period": periods, "state at phase 0": states})
         yield from printing.describe(data, "xi_rel_max")
 
 
-class Manifold(OfStored, OfBox, Asked, Stored, Results):
+class Manifold(OfStored, OfBox, FunctionCommand, Stored, Results):
     """The unstable manifold of a saddle of the stroboscopic map, as a curve to each side."""
 
     calls = "manifold"
@@ -241,13 +253,13 @@ class Manifold(OfStored, OfBox, Asked, Stored, Results):
   {program} manifold --structure beam --hz 14 --g 0.02
 What starts next to a saddle with one multiplier outside the unit circle leaves along it."""
 
-    def ask(self) -> tuple[Structure, Keywords]:
+    def read_question(self) -> tuple[Structure, Keywords]:
         structure, question = self.read_structure_and_question()
         if self.is_shaken() or question["start"] is None:
-            question |= self.read_excitation(structure, si=True, one=True)
+            question |= self.read_excitation(structure, needs_metres=True, one_frequency=True)
         return structure, question
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         yield f"saddle: multiplier {float(data.multiplier):.6f}"
         yield from printing.describe(data, "x_rel")
         breaks = [int((data.break_side == i).sum()) for i in range(data.sizes["side"])]
@@ -255,16 +267,16 @@ What starts next to a saddle with one multiplier outside the unit circle leaves 
         sides = {"points": data.arclength.count("point"), "size": size, "breaks": ("side", breaks)}
         columns = printing.columns_of(data.assign(sides), "side end points breaks size:.4g")
         columns["length over the orbit's size"] = columns.pop("size")
-        yield from printing.table(columns)
+        yield from printing.table_lines(columns)
 
 
-def both_ends(data: xr.Dataset) -> Iterator[str]:
+def branch_end_lines(data: xr.Dataset) -> Iterator[str]:
     ends = data.attrs["first_end"], data.attrs["last_end"]
     yield "first end: {}; last end: {}".format(*ends)
-    yield from printing.hints(dict.fromkeys(ends))
+    yield from printing.hint_lines(dict.fromkeys(ends))
 
 
-class Branch(OfStored, OfBox, Asked, Stored, Results):
+class Branch(OfStored, OfBox, FunctionCommand, Stored, Results):
     """Follow periodic motions along a parameter, stable and unstable, to their bifurcations."""
 
     calls = "branch"
@@ -277,29 +289,31 @@ class Branch(OfStored, OfBox, Asked, Stored, Results):
   {program} branch --start branch.nc --switch 1 --limits 2.4:2.9   the branch that leaves there
 The excitation says where a first orbit is looked for; without it that is the lower limit."""
 
-    def ask(self) -> tuple[Structure, Keywords]:
-        over, limits = parse_varied(self.over, self.needed("limits", "; expected FIRST:LAST"))
+    def read_question(self) -> tuple[Structure, Keywords]:
+        over, limits = parse_continued_parameter(
+            self.over, self.require("limits", "; expected FIRST:LAST")
+        )
         structure, keywords = self.read_structure_and_question()
         if over == "frequency" and self.g is not None:
-            self.hold_amplitude(structure, limits[0])
+            self.replace_level_by_amplitude(structure, limits[0])
         excitation = self.branch_excitation(structure, over, keywords["start"] is not None)
         return structure, {**keywords, **excitation, "over": over, "limits": limits}
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         name, count = str(data.attrs["over"]), data.sizes.get("bifurcation", 0)
-        yield f"{data.sizes['point']} orbits at {printing.format_reach(data, name)}"
-        yield from printing.counts(data, data.stability)
+        yield f"{data.sizes['point']} orbits at {printing.format_full_range(data, name)}"
+        yield from printing.count_lines(data, data.stability)
         rows = data.rename({"bifurcation_value": f"bifurcation_{name}"} if count else {})
         rows = rows.assign(bifurcation_number=("bifurcation", range(count)))
-        yield from printing.listing(rows, "bifurcation", f"number kind {name}:.8f")
-        yield from both_ends(data)
+        yield from printing.listing_lines(rows, "bifurcation", f"number kind {name}:.8f")
+        yield from branch_end_lines(data)
 
-    def hold_amplitude(self, structure: Structure, first: float) -> None:
+    def replace_level_by_amplitude(self, structure: Structure, first: float) -> None:
         """Replace ``--g`` by the amplitude that it is at the start of a branch over frequency."""
         frequency = first
-        if self.frequency_option() is not None:
-            frequency = self.read_excitation(structure, one=True)["frequency"]
-        level = positive_number("--g", self.g) * GRAVITY
+        if self.given_frequency_option() is not None:
+            frequency = self.read_excitation(structure, one_frequency=True)["frequency"]
+        level = parse_positive_number("--g", self.g) * GRAVITY
         amplitude = float(f"{level / frequency**2:.6g}")
         text = f"--g {self.g}: is --amplitude {amplitude:g} at {frequency / TURN:.5g} Hz"
         if structure.has_scale:
@@ -308,13 +322,13 @@ The excitation says where a first orbit is looked for; without it that is the lo
         self.g, self.amplitude = None, amplitude
 
     def branch_excitation(self, structure: Structure, over: str, begun: bool) -> Keywords:
-        name, amplitude = self.frequency_option(), self.read_amplitude()
+        name, amplitude = self.given_frequency_option(), self.amplitude_or_level()
         if over == "frequency" and amplitude is None and not begun:
             raise InputError(f"--over {self.over}: expected --amplitude in m with it")
         if name is None and (begun or over in ("eta", "frequency")):
             given = {} if amplitude is None else {"amplitude": amplitude}
-            return given | self.pushes()
-        excitation = self.read_excitation(structure, one=True)
+            return given | self.given_pushes()
+        excitation = self.read_excitation(structure, one_frequency=True)
         needed = {"eta": "eta", "frequency": "frequency", "amplitude": "frequency"}.get(over)
         if needed and needed not in excitation:
             expected = (
@@ -324,13 +338,13 @@ The excitation says where a first orbit is looked for; without it that is the lo
         return excitation
 
 
-parse_bifurcation = reads(
-    "a number, or all", lambda _, text: text if text == "all" else plain_int(text)
+parse_bifurcation = make_reader(
+    "a number, or all", lambda _, text: text if text == "all" else parse_plain_int(text)
 )
 Bifurcation = Annotated[int | str, parse_bifurcation]
 
 
-class Border(OfStored, OfPushes, Asked, Stored, Results):
+class Border(OfStored, OfPushes, FunctionCommand, Stored, Results):
     """Follow a bifurcation of a branch over two parameters: where a window begins or ends."""
 
     calls = "border"
@@ -346,23 +360,25 @@ class Border(OfStored, OfPushes, Asked, Stored, Results):
 --start is what the command branch has written, with the numbers of its bifurcations;
 structure and excitation are those of that branch."""
 
-    def ask(self) -> tuple[Structure, Keywords]:
-        self.needed("start", "; expected a file of the command branch")
-        ranges = self.needed("limits", "; expected A:B,C:D").split(",")
+    def read_question(self) -> tuple[Structure, Keywords]:
+        self.require("start", "; expected a file of the command branch")
+        ranges = self.require("limits", "; expected A:B,C:D").split(",")
         names = [part.strip() for part in self.over.split(",")]
         if len(names) != 2:
             raise InputError(f"--over {self.over}: expected two names, such as eta,e or hz,e")
         if len(ranges) != 2:
             text = f"expected A:B,C:D, a range for each of {self.over}"
             raise InputError(f"--limits {self.limits}: {text}")
-        over, limits = zip(*map(parse_varied, names, map(str.strip, ranges)), strict=True)
+        over, limits = zip(
+            *map(parse_continued_parameter, names, map(str.strip, ranges)), strict=True
+        )
         structure, question = self.read_structure_and_question()
-        return structure, {**question, **self.pushes(), "over": over, "limits": limits}
+        return structure, {**question, **self.given_pushes(), "over": over, "limits": limits}
 
     def __call__(self) -> None:
-        structure, question = self.ask()
+        structure, question = self.read_question()
         if question["bifurcation"] != "all":
-            self.answer(structure, question)
+            self.compute_print_and_write(structure, question)
             return
         from ..dynamics.borders import lies_on_curve
 
@@ -375,21 +391,21 @@ structure and excitation are those of that branch."""
                 print(f"number {number} is on a curve that was followed")
                 continue
             try:
-                curves += self.answer(structure, one, picture=False).values()
+                curves += self.compute_print_and_write(structure, one, picture=False).values()
             except InputError as reason:
                 print(f"number {number} is not followed: {reason}")
         if not curves:
             raise InputError(f"--start {self.start}: no bifurcation that can be followed")
-        name = result_name("border_all", self.source_names(), structure, question)
+        name = result_name("border_all", self.source_file_stems(), structure, question)
         shown = [with_units(curve, self.display_units(question)) for curve in curves]
-        files = Files.from_options(self, name, fresh=True)
+        files = ResultFiles.from_options(self, name, fresh=True)
         files.write_pictures(partial(orchestrate.plot, *shown))
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         names = [str(name) for name in data.attrs["over"]]
         yield f"{data.attrs['kind']}: {data.sizes['point']} points"
         for name in names:
             both = [printing.format_parameter(data, name, data[name][i]) for i in (0, -1)]
-            yield f"from {' to '.join(both)}, within {printing.format_reach(data, name)}"
-        yield from printing.listing(data, "codimension_two", f"kind {' '.join(names)}")
-        yield from both_ends(data)
+            yield f"from {' to '.join(both)}, within {printing.format_full_range(data, name)}"
+        yield from printing.listing_lines(data, "codimension_two", f"kind {' '.join(names)}")
+        yield from branch_end_lines(data)

@@ -43,33 +43,33 @@ MEANT = {
 # -- numbers --------------------------------------------------------------------------------------
 
 
-def plain_float(text: str, kind: Callable[[str], Any] = float) -> Any:
+def parse_plain_float(text: str, kind: Callable[[str], Any] = float) -> Any:
     """Parse a number in plain digits; raise ``ValueError`` for ``1_000`` and other scripts."""
     if not text.isascii() or "_" in text:
         raise ValueError(text)
     return kind(text)
 
 
-def plain_int(text: str) -> int:
-    return int(plain_float(text, int))
+def parse_plain_int(text: str) -> int:
+    return int(parse_plain_float(text, int))
 
 
-def number(name: str, text: str) -> float:
-    """Parse a number of a quantity, with one of its units behind it or none."""
+def parse_quantity(name: str, text: str) -> float:
+    """Parse a number of a quantity in SI, or with one of its units behind it."""
     with_unit = ranges.parse_number_with_unit(name, text.strip())
-    return float(plain_float(text)) if with_unit is None else with_unit
+    return float(parse_plain_float(text)) if with_unit is None else with_unit
 
 
-def option_quantity(option: str) -> str:
+def quantity_of_option(option: str) -> str:
     return option.lstrip("-").replace("-", "_")
 
 
-def with_point(text: str) -> str:
-    """Return the words on a number that seems to have a decimal comma; nothing on others."""
+def decimal_point_hint(text: str) -> str:
+    """Return a remark on a number that seems to have a decimal comma; nothing on others."""
     return f" (with a decimal point, {text.replace(',', '.')})" if COMMA.fullmatch(text) else ""
 
 
-def reads(expected: str, split: Callable[[str, str], Parsed]) -> Reader[Parsed]:
+def make_reader(expected: str, split: Callable[[str, str], Parsed]) -> Reader[Parsed]:
     """Return the reader of an option's text by a function that raises ``ValueError``.
 
     The function takes the quantity that the option is, whose units texts may have, and the text.
@@ -77,40 +77,42 @@ def reads(expected: str, split: Callable[[str, str], Parsed]) -> Reader[Parsed]:
 
     def read(option: str, text: str) -> Parsed:
         try:
-            return split(option_quantity(option), text)
+            return split(quantity_of_option(option), text)
         except ValueError:
-            raise InputError(f"{option} {text}: expected {expected}{with_point(text)}") from None
+            raise InputError(
+                f"{option} {text}: expected {expected}{decimal_point_hint(text)}"
+            ) from None
 
     return read
 
 
-def floats(
+def numbers_reader(
     expected: str, separator: str = ",", counts: Collection[int] = (), positive: bool = False
 ) -> Reader[tuple[float, ...]]:
     """Return a reader of numbers between separators (a regular expression), ``counts`` of them."""
 
     def split(name: str, text: str) -> tuple[float, ...]:
-        numbers = tuple(number(name, part) for part in re.split(separator, text))
+        numbers = tuple(parse_quantity(name, part) for part in re.split(separator, text))
         wrong = counts and len(numbers) not in counts
         if wrong or (positive and not all(0.0 < one < math.inf for one in numbers)):
             raise ValueError(text)
         return numbers
 
-    return reads(expected, split)
+    return make_reader(expected, split)
 
 
 def split_state(_: str, text: str) -> tuple[float, ...]:
     pairs = zip(("x1", "x2", "v1", "v2"), text.split(","), strict=True)
-    return tuple(number(name, part) for name, part in pairs)
+    return tuple(parse_quantity(name, part) for name, part in pairs)
 
 
 def split_plane_side(_: str, text: str) -> tuple[str, float, float, int]:
     name, first, last, count = (part.strip() for part in text.split(","))
-    return name, number(name, first), number(name, last), plain_int(count)
+    return name, parse_quantity(name, first), parse_quantity(name, last), parse_plain_int(count)
 
 
 def split_breakpoints(_: str, text: str, unit: float = 1.0) -> tuple[tuple[float, float], ...]:
-    pairs = [tuple(map(plain_float, part.split(":"))) for part in text.split(",")]
+    pairs = [tuple(map(parse_plain_float, part.split(":"))) for part in text.split(",")]
     if not all(len(pair) == 2 and all(map(math.isfinite, pair)) for pair in pairs):
         raise ValueError(text)
     return tuple((frequency, unit * value) for frequency, value in pairs)
@@ -123,20 +125,20 @@ def split_density(name: str, text: str) -> tuple[tuple[float, float], ...]:
 
 
 def split_orders(_: str, text: str) -> float | tuple[float, ...]:
-    orders = tuple(map(plain_float, text.split(",")))
+    orders = tuple(map(parse_plain_float, text.split(",")))
     return orders if "," in text else orders[0]
 
 
-read_int = reads("a whole number", lambda _, text: plain_int(text))
-parse_ends = floats("FIRST:LAST, two numbers such as 1.2:1.65", ":", (2,))
-parse_number_or_ends = floats("a number, or FIRST:LAST such as 1.2:1.65", ":", (1, 2))
-parse_rates = floats("a number > 0, or several such as 1e-4,5e-5,2.5e-5", positive=True)
-parse_sensor = floats("HZ or HZ:RATE, such as 10000:25600", ":", (1, 2))
-parse_state = reads(STATE, split_state)
-parse_breakpoints = reads(BREAKPOINTS, split_breakpoints)
-parse_density = reads(f"{BREAKPOINTS}, or 10:2e-3,200:2e-3g2/Hz", split_density)
-parse_orders = reads("a number, or a list such as 0.5,1,2", split_orders)
-parse_plane_side = reads(
+read_int = make_reader("a whole number", lambda _, text: parse_plain_int(text))
+parse_ends = numbers_reader("FIRST:LAST, two numbers such as 1.2:1.65", ":", (2,))
+parse_number_or_ends = numbers_reader("a number, or FIRST:LAST such as 1.2:1.65", ":", (1, 2))
+parse_rates = numbers_reader("a number > 0, or several such as 1e-4,5e-5,2.5e-5", positive=True)
+parse_sensor = numbers_reader("HZ or HZ:RATE, such as 10000:25600", ":", (1, 2))
+parse_state = make_reader(STATE, split_state)
+parse_breakpoints = make_reader(BREAKPOINTS, split_breakpoints)
+parse_density = make_reader(f"{BREAKPOINTS}, or 10:2e-3,200:2e-3g2/Hz", split_density)
+parse_orders = make_reader("a number, or a list such as 0.5,1,2", split_orders)
+parse_plane_side = make_reader(
     "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60 or x_rel,0,20um,60", split_plane_side
 )
 Ends = Annotated[tuple[float, ...] | None, parse_ends]
@@ -146,31 +148,31 @@ Density = Annotated[tuple[tuple[float, float], ...] | None, parse_density]
 Orders = Annotated[float | tuple[float, ...] | None, parse_orders]
 
 
-def read_number(option: str, text: str, name: str = "", other: str = "") -> float:
+def parse_number(option: str, text: str, name: str = "", other: str = "") -> float:
     try:
-        return number(name or option_quantity(option), text)
+        return parse_quantity(name or quantity_of_option(option), text)
     except ValueError:
-        units = " or ".join([*ranges.written_unit_factors(name or option_quantity(option))][:4])
+        units = " or ".join([*ranges.written_unit_factors(name or quantity_of_option(option))][:4])
         words = f", with {units} if you like" if units else other
-        text = f"{text}: expected a number{words}{with_point(text)}"
+        text = f"{text}: expected a number{words}{decimal_point_hint(text)}"
         raise InputError(f"{option}{'' if option.endswith('=') else ' '}{text}") from None
 
 
-def positive_number(option: str, text: str) -> float:
+def parse_positive_number(option: str, text: str) -> float:
     expected = f"a number > 0, such as {option} 0.5"
-    return floats(expected, counts=(1,), positive=True)(option, text)[0]
+    return numbers_reader(expected, counts=(1,), positive=True)(option, text)[0]
 
 
-def read_state(option: str, text: str) -> tuple[float, ...] | Path:
+def parse_state_or_file(option: str, text: str) -> tuple[float, ...] | Path:
     """Parse x1, x2, v1, v2; or the file of an earlier command's result that has states."""
     return Path(text) if text.endswith(".nc") else parse_state(option, text)
 
 
-Positive = Annotated[float | None, positive_number]
-State = Annotated[Any, read_state]
+Positive = Annotated[float | None, parse_positive_number]
+State = Annotated[Any, parse_state_or_file]
 
 
-def parse_rate(option: str, text: str) -> float:
+def parse_single_rate(option: str, text: str) -> float:
     """Parse one rate > 0; name the command that takes several."""
     rates = parse_rates(option, text)
     if len(rates) > 1:
@@ -179,14 +181,14 @@ def parse_rate(option: str, text: str) -> float:
     return rates[0]
 
 
-def read_choice(choices: Collection[Any], option: str, text: str) -> Any:
+def parse_choice(choices: Collection[Any], option: str, text: str) -> Any:
     for choice in choices:
         if text == str(choice):
             return choice
     raise InputError(f"{option} {text}: {expected_one_of(text, map(str, choices))}")
 
 
-def read_earlier_result(option: str, path: Path) -> xr.Dataset:
+def load_earlier_result(option: str, path: Path) -> xr.Dataset:
     from ..running.store import load_foreign_result
 
     expected = "expected a result of an earlier command"
@@ -204,8 +206,8 @@ def read_earlier_result(option: str, path: Path) -> xr.Dataset:
     return data
 
 
-def read_pairs(option: str, texts: Iterable[str], expected: str) -> dict[str, str]:
-    """Return ``NAME=VALUE`` texts as a dict; raise where a part is missing or a name repeats."""
+def parse_pairs(option: str, texts: Iterable[str], expected: str) -> dict[str, str]:
+    """Parse ``NAME=VALUE`` texts to a dict; raise where a part is missing or a name repeats."""
     pairs: dict[str, str] = {}
     for text in texts:
         name, _, value = (part.strip() for part in text.partition("="))
@@ -219,13 +221,13 @@ def with_option_names(message: str, chosen: Any) -> str:
     """Return a message in which keywords are options: ``--unit g`` for ``unit = 'g'``."""
     options, renamed = vars(chosen), getattr(chosen, "renamed", {})
 
-    def option_of(name: str) -> str:
+    def flag_of(name: str) -> str:
         name = renamed.get(name, name)
         return f"--{name.replace('_', '-')}" if name in options else ""
 
-    def given(keyword: re.Match[str]) -> str:  # at the beginning: what is wrong
+    def replace_subject(keyword: re.Match[str]) -> str:  # at the beginning: what is wrong
         name, joint = keyword["name"], keyword["joint"]
-        if not (flag := option_of(name)) or (options.get(name) is None) != (joint == " = None"):
+        if not (flag := flag_of(name)) or (options.get(name) is None) != (joint == " = None"):
             return keyword[0]
         file = f" {options[name]}" if isinstance(options.get(name), Path) else ""
         flag = flag if flag in type(chosen).flags() else ""  # else it has none
@@ -233,27 +235,32 @@ def with_option_names(message: str, chosen: Any) -> str:
             joint, f"{file}{joint}".lstrip(" " * (not flag))
         )
 
-    def named(keyword: re.Match[str]) -> str:  # what to do
+    def replace_advice(keyword: re.Match[str]) -> str:  # what to do
         value = MAPPING_ITEM.sub(r"\1=\2", keyword["value"]).strip("'{}")
-        return f"{flag} {value}".rstrip() if (flag := option_of(keyword["name"])) else keyword[0]
+        return f"{flag} {value}".rstrip() if (flag := flag_of(keyword["name"])) else keyword[0]
 
-    message = re.sub(r"^(?P<name>[a-z_]\w*)(?P<joint> = None| = |: )", given, message)
-    return KEYWORD.sub(named, message)
+    message = re.sub(r"^(?P<name>[a-z_]\w*)(?P<joint> = None| = |: )", replace_subject, message)
+    return KEYWORD.sub(replace_advice, message)
 
 
 # -- ranges and lists -----------------------------------------------------------------------------
 
 
-def parse_values(option: str, text: str, zero: bool = False, name: str = "") -> tuple[float, ...]:
-    """Parse ``FIRST:LAST:STEP`` or ``A,B,...``; with ``zero`` numbers may be zero."""
+def parse_values(
+    option: str, text: str, allow_zero: bool = False, name: str = ""
+) -> tuple[float, ...]:
+    """Parse ``FIRST:LAST:STEP`` or ``A,B,...`` of numbers > 0, or >= 0; ``name``: the quantity."""
     parts = text.split(":" if ":" in text else ",")
     try:
-        exact = [Decimal(repr(number(name or option_quantity(option), part))) for part in parts]
+        exact = [
+            Decimal(repr(parse_quantity(name or quantity_of_option(option), part)))
+            for part in parts
+        ]
     except ValueError:
         raise InputError(f"{option} {text}: not numbers; {RANGE}") from None
     finite = all(one.is_finite() for one in exact)
     wrong = not finite or (":" in text and len(exact) != 3) or min(exact) < 0
-    if wrong or (not zero and min(exact) == 0):
+    if wrong or (not allow_zero and min(exact) == 0):
         raise InputError(f"{option} {text}: {RANGE}")
     if ":" in text:
         first, last, step = exact
@@ -271,24 +278,24 @@ Listed = Annotated[tuple[float, ...] | None, parse_values]
 def parse_over_values(parameter: str, text: str) -> tuple[float, ...]:
     """Parse ``--values`` of ``--over PARAMETER``, in its unit; zero is a value like any other."""
     if ":" in text:
-        return parse_values("--values", text, zero=True, name=parameter)
+        return parse_values("--values", text, allow_zero=True, name=parameter)
     option = f"--over {parameter} --values"
-    return tuple(read_number(option, one, parameter) for one in text.split(","))
+    return tuple(parse_number(option, one, parameter) for one in text.split(","))
 
 
 def is_single_number(text: str) -> bool:
     return not (":" in text or "," in text)
 
 
-def parse_one_or_more(option: str, text: str, one: bool = False) -> float | tuple[float, ...]:
-    """Parse one number as float, a range or list as tuple; with ``one``, one number only."""
+def parse_one_or_more(option: str, text: str, only_one: bool = False) -> float | tuple[float, ...]:
+    """Parse one number as float, a range or list as tuple; with ``only_one`` refuse several."""
     values = parse_values(option, text)
-    if one and len(values) != 1:
+    if only_one and len(values) != 1:
         raise InputError(
             f"{option} {text}: {len(values)} values; expected one, such as {option} 1.2 (sweep "
-            f"varies one parameter, map two, resonance also the level){with_point(text)}"
+            f"varies one parameter, map two, resonance also the level){decimal_point_hint(text)}"
         )
-    return values[0] if one or is_single_number(text) else values
+    return values[0] if only_one or is_single_number(text) else values
 
 
 # -- names and values -----------------------------------------------------------------------------
@@ -297,14 +304,14 @@ def parse_one_or_more(option: str, text: str, one: bool = False) -> float | tupl
 def parse_changes(texts: Iterable[str], wall: bool = False) -> dict[str, float | bool]:
     """Parse the texts ``NAME=VALUE`` of ``--set`` into a dict from parameter to value."""
     changes: dict[str, float | bool] = {}
-    pairs = read_pairs("--set", texts, "NAME=VALUE such as e=0.3")
+    pairs = parse_pairs("--set", texts, "NAME=VALUE such as e=0.3")
     known = {**SET_NAMES, **(OF_ONE_MASS if wall or pairs.get("wall") == "true" else {})}
     for name, text in pairs.items():
         names = known.get(name, (name,))
         value: float | bool = text == "true"
         if text not in ("true", "false"):
-            check_name(names[0])
-            value = read_number(f"--set {names[0]}=", text, names[0], ", or true or false")
+            check_parameter_name(names[0])
+            value = parse_number(f"--set {names[0]}=", text, names[0], ", or true or false")
         if name == "preload":  # as a length: in N it depends on the springs
             if text[-1:] != "m" or value < 0.0:
                 raise InputError(f"--set preload={text}: expected a length above 0, such as 20um")
@@ -315,7 +322,7 @@ def parse_changes(texts: Iterable[str], wall: bool = False) -> dict[str, float |
     return changes
 
 
-def check_name(name: str) -> None:
+def check_parameter_name(name: str) -> None:
     from ..model import PARAMETERS
 
     known = (*PARAMETERS, "bonded", "wall", "preload", *SET_NAMES)

@@ -16,10 +16,10 @@ from ..lazy import xr
 from ..model import Shaker, Structure
 from ..units import Units
 from . import grammar, output, printing
-from .answer import Asked, Runs
-from .command import Command, Keywords, Options, arguments_of, option, option_names
+from .answer import FunctionCommand, Runs
+from .command import Command, Keywords, Options, is_needed_by_argument, option, option_names
 from .options import Beside, OfSensors, OfStructure
-from .output import Files, Reading, digest, unit_note
+from .output import Reading, ResultFiles, digest, unit_override_note
 
 
 class ExcitationKind(NamedTuple):
@@ -38,9 +38,9 @@ EXCITATIONS = {
     "hammer": ExcitationKind("Hammer", ("peak", "width")),
     "record": ExcitationKind("read_record"),
 }
-SweepEnds = Annotated[Any, grammar.floats("FIRST:LAST in Hz, such as 8:20", ":", (2,))]
+SweepEnds = Annotated[Any, grammar.numbers_reader("FIRST:LAST in Hz, such as 8:20", ":", (2,))]
 Knock = Annotated[
-    Any, grammar.floats("PEAK:WIDTH in N and s, two numbers such as 20:0.004", ":", (2,))
+    Any, grammar.numbers_reader("PEAK:WIDTH in N and s, two numbers such as 20:0.004", ":", (2,))
 ]
 LEVELS = ("g", "acceleration")
 
@@ -79,35 +79,35 @@ class OfExcitation(Options):
     )
 
     def read_excitation(self) -> Any:
-        kind = self.excitation_kind()
+        kind = self.checked_excitation_kind()
         calls, names, argument = EXCITATIONS[kind]
-        settings = self.given(OfExcitation)
+        settings = self.given_options(OfExcitation)
         main = settings.pop(kind)
         if kind == "record":
             if column := settings.pop("column", None):
                 column = int(column) if column.isdecimal() else column
                 settings["channels"] = {"box_acceleration": column}
             record = orchestrate.read_record(main, **settings)
-            if note := unit_note(record.attrs):
+            if note := unit_override_note(record.attrs):
                 print(f"{main}: {note}")
             return orchestrate.Sampled.from_record(record)
         has_level = [settings.pop(name) for name in LEVELS if name in settings]
         if argument and (has_level or kind != "random"):
-            settings[argument] = level = self.read_level()
+            settings[argument] = level = self.parse_level()
             if argument != "acceleration" and not isinstance(level, float):
                 raise InputError(f"{option_names([kind])}: expected one number for its level")
         settings |= dict(zip(names, main if len(names) > 1 else (main,), strict=True))
         return getattr(orchestrate, calls)(**settings)
 
-    def excitation_kind(self) -> str:
-        given = self.given(OfExcitation)
+    def checked_excitation_kind(self) -> str:
+        given = self.given_options(OfExcitation)
         chosen = [name for name in EXCITATIONS if name in given]
         if len(chosen) != 1:
             words = option_names(chosen, " and ") or "nothing"
             raise InputError(
                 f"excitation: {words} given; expected one of {option_names(EXCITATIONS)}"
             )
-        takes = {name: arguments_of(kind.calls) for name, kind in EXCITATIONS.items()}
+        takes = {name: is_needed_by_argument(kind.calls) for name, kind in EXCITATIONS.items()}
         leveled = [name for name, kind in EXCITATIONS.items() if kind.level]
         owners = {**dict.fromkeys(LEVELS, leveled), "column": ["record"]}
         for name in given.keys() - EXCITATIONS.keys() - owners.keys():
@@ -118,19 +118,21 @@ class OfExcitation(Options):
                 raise InputError(f"{option_names(chosen)}: expected --{name} with it, in s")
         return chosen[0]
 
-    def read_level(self) -> Any:
+    def parse_level(self) -> Any:
         """Return the peak acceleration, m/s2: a number, or a profile over frequency."""
-        chosen = self.one_of(*LEVELS)
+        chosen = self.given_option(*LEVELS)
         if chosen is None:
             raise InputError("level: nothing given; expected one of --g and --acceleration")
         text, unit = getattr(self, chosen), GRAVITY if chosen == "g" else 1.0
         if ":" not in text:
-            return unit * grammar.positive_number(f"--{chosen}", text)
+            return unit * grammar.parse_positive_number(f"--{chosen}", text)
         pairs = grammar.parse_breakpoints(f"--{chosen}", text)
         return tuple((frequency, unit * value) for frequency, value in pairs)
 
 
-class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, output.Stored, output.Results):
+class Shake(
+    OfStructure, OfExcitation, OfSensors, Beside, FunctionCommand, output.Stored, output.Results
+):
     """As in the laboratory: motion and impacts under sines, random, shock or a record."""
 
     calls = "shake"
@@ -147,16 +149,16 @@ class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, output.Stored, 
   {program} shake --structure beam --record base.csv --unit g
 --sensor also writes what accelerometers read, a record for diagnose, analyse and channels."""
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
-        yield from super().summary(data)
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
+        yield from super().summary_lines(data)
         if "control_aborted" in data and data.control_aborted.notnull():
             end = float(data.control_aborted)
             yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
 
-    def ask(self) -> tuple[Structure, Keywords]:
+    def read_question(self) -> tuple[Structure, Keywords]:
         from ..running.job import refuse_unsupported_structure
 
-        structure, shaker = self.read_structure(), self.shaker
+        structure, shaker = self.read_and_report_structure(), self.shaker
         if self.read_sensor() is not None:  # before anything is computed
             refuse_unsupported_structure("--sensor", structure)
         excitation = self.read_excitation()
@@ -165,17 +167,19 @@ class Shake(OfStructure, OfExcitation, OfSensors, Beside, Asked, output.Stored, 
             warnings.warn(f"{text}; the default is {needed:g}", stacklevel=2)
         return structure, {
             "excitation": excitation,
-            **self.keywords(),
+            **self.function_keywords(),
             "shaker": None if shaker is None else Shaker.from_file(shaker),
         }
 
-    def write_more(self, files: Files, question: Keywords, shown: Runs, results: Runs) -> None:
+    def write_further_files(
+        self, files: ResultFiles, question: Keywords, shown: Runs, results: Runs
+    ) -> None:
         if (sensor := self.read_sensor()) is None:
             return
         excitation = None if self.shaker else question["excitation"]
         for state, data in results.items():
             own = "" if self.store else digest(sensor.label, sensor.rate)  # one file, one name
-            path = files.beside(state, "sensors", own)
+            path = files.path_with_suffixes(state, "sensors", own)
             record = orchestrate.measure(data, sensor, excitation=excitation)
             for ending in dict.fromkeys(("nc", *(one for one in files.formats if one != "xlsx"))):
                 written = orchestrate.write_record(record, path.with_suffix(f".{ending}"))
@@ -198,7 +202,7 @@ ANALYSES = {  # of --show: the public function, what it shows; whose peaks, what
 SHOWN = ", ".join(f"{name} ({row[1]})" for name, row in ANALYSES.items())
 
 
-def columns_of_analysis(name: str, data: xr.Dataset) -> printing.Columns:
+def peak_columns_of_analysis(name: str, data: xr.Dataset) -> printing.Columns:
     """Return a row for each channel, and each order: the largest value, and where it is."""
     if name in ("orders", "harmonics"):  # of the box they are those of the excitation
         data = data.drop_sel(channel="box_acceleration", errors="ignore")
@@ -212,7 +216,9 @@ def columns_of_analysis(name: str, data: xr.Dataset) -> printing.Columns:
     along = [dim for dim in peaks.dims if dim not in ("channel", "order")]
     top = data.assign({variable: peaks}).isel(peaks.fillna(-1.0).argmax(along))
     where = "at:.5g time:.4g" if "time" in top.coords else "at:.5g"
-    return printing.rows_of(top.assign(at=top.frequency), f"{variable}:.4g {where} {others}")
+    return printing.stacked_columns_of(
+        top.assign(at=top.frequency), f"{variable}:.4g {where} {others}"
+    )
 
 
 class Settings(Options):
@@ -245,7 +251,7 @@ class AnalysedRecords(Options):
     to: float | None = option("time it ends at, s")
 
 
-class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Asked):
+class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, FunctionCommand):
     """What an analyser shows of a record: responses, spectra, orders, shock spectra."""
 
     stores = False
@@ -258,30 +264,36 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Asked
 
     def __call__(self) -> None:
         names = output.parse_endings("--show", self.show, tuple(ANALYSES))
-        Files.from_options(self, "", fresh=True)  # before records are read
+        ResultFiles.from_options(self, "", fresh=True)  # before records are read
         settings = self.settings_by_analysis(names)
         self.paths = self.paths_by_label()
         whole = {label: self.read_record_file(path) for label, path in self.paths.items()}
-        self.warn_without_sensor(whole)
-        self.records = {label: self.cut(one, self.paths[label]) for label, one in whole.items()}
+        self.check_sensor_use(whole)
+        self.records = {
+            label: self.measure_and_cut(one, self.paths[label]) for label, one in whole.items()
+        }
         for label, record in self.records.items():
-            if note := unit_note(record.attrs):
+            if note := unit_override_note(record.attrs):
                 print(f"{self.paths[label]}: {note}")
         read = {label: str(path) for label, path in self.paths.items()}
-        reading = [self.begin, self.to, *self.given(OfSensors).values()]
-        reading += self.given(Reading).items()
+        reading = [self.begin, self.to, *self.given_options(OfSensors).values()]
+        reading += self.given_options(Reading).items()
         for self.analysis in names:
             self.calls, self.named = ANALYSES[self.analysis][0], f"analyse_{self.analysis}"
-            self.answer([read, reading], settings[self.analysis])
+            self.compute_print_and_write([read, reading], settings[self.analysis])
 
-    def source_names(self) -> list[str]:
+    def source_file_stems(self) -> list[str]:
         return [self.record.stem]
 
-    def states(self, structure: Any) -> dict[str, Any]:
+    def structures_by_state(self, structure: Any) -> dict[str, Any]:
         return self.records
 
     def compute(
-        self, states: Mapping[str, Any], others: Any, question: Keywords, files: Mapping[str, Files]
+        self,
+        states: Mapping[str, Any],
+        others: Any,
+        question: Keywords,
+        files: Mapping[str, ResultFiles],
     ) -> dict[str, xr.Dataset]:
         results = {}
         for label, record in states.items():
@@ -294,9 +306,9 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Asked
     def display_units(self, question: Keywords) -> Units:
         return self.read_record_units()
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         yield ANALYSES[self.analysis][1]
-        yield from printing.table(columns_of_analysis(self.analysis, data))
+        yield from printing.table_lines(peak_columns_of_analysis(self.analysis, data))
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         from ..show.analysis import draw
@@ -304,7 +316,7 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Asked
         (label, first), *others = results.items()
         return draw(first, label, dict(others))
 
-    def warn_without_sensor(self, records: Mapping[str, xr.Dataset]) -> None:
+    def check_sensor_use(self, records: Mapping[str, xr.Dataset]) -> None:
         """Warn if simulated accelerations without impulses are compared with measured ones.
 
         Raise where sensors are given, and no motion is simulated.
@@ -321,8 +333,8 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Asked
             )
 
     def settings_by_analysis(self, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
-        chosen = self.given(Settings)
-        takes = {name: arguments_of(row[0]) for name, row in ANALYSES.items()}
+        chosen = self.given_options(Settings)
+        takes = {name: is_needed_by_argument(row[0]) for name, row in ANALYSES.items()}
         owners = {one: [name for name in takes if one in takes[name]] for one in chosen}
         self.refuse_without(owners, names, "--show ")
         return {name: {o: chosen[o] for o in chosen if o in takes[name]} for name in names}
@@ -330,13 +342,13 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Asked
     def paths_by_label(self) -> dict[str, Path]:
         """Return a dict from label to record file, from FILE and ``--beside``; FILE comes first."""
         label = self.label or (self.record.stem if self.beside else "")
-        beside = grammar.read_pairs("--beside", self.beside, "LABEL=FILE, such as bonded=whole.nc")
+        beside = grammar.parse_pairs("--beside", self.beside, "LABEL=FILE, such as bonded=whole.nc")
         if label in beside:
             text = f"a second record {label}; expected another label"
             raise InputError(f"--beside {label}={beside[label]}: {text}")
         return {label: self.record, **{name: Path(path) for name, path in beside.items()}}
 
-    def cut(self, record: xr.Dataset, path: Path) -> xr.Dataset:
+    def measure_and_cut(self, record: xr.Dataset, path: Path) -> xr.Dataset:
         """Apply ``--sensor`` to a simulated record; cut it from ``--from`` to ``--to``."""
         if (sensor := self.read_sensor()) is not None and "impulse" in record:
             record = orchestrate.measure(record, sensor)
@@ -351,18 +363,18 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Asked
 
     def read_record_file(self, path: Path) -> xr.Dataset:
         if path.suffix.lower() == ".nc":
-            stored = grammar.read_earlier_result(
+            stored = grammar.load_earlier_result(
                 "FILE" if path == self.record else "--beside", path
             )
             units = {stored[name].attrs.get("units", "m/s2") for name in MASSES if name in stored}
             return stored if units <= {"m/s2"} else orchestrate.read_record(path)
-        reading = self.given(Reading)
+        reading = self.given_options(Reading)
         if path.suffix.lower() != ".wav":  # the scale is of the others
             reading.pop("scale", None)
         return orchestrate.read_record(path, **reading)
 
 
-Pair = Annotated[Any, grammar.floats("H1,H2, two numbers such as 3,2", ",", (2,))]
+Pair = Annotated[Any, grammar.numbers_reader("H1,H2, two numbers such as 3,2", ",", (2,))]
 
 
 class Halves(Reading, Command):
@@ -387,7 +399,7 @@ is a guess: --structure of diagnose, plan and others; complete it by e and clear
     def __call__(self) -> None:
         if len(self.records) > 2:
             raise InputError(f"{self.records[-1]}: expected one record of each half")
-        reading = self.given(Reading)
+        reading = self.given_options(Reading)
         records = [orchestrate.read_record(path, **reading) for path in self.records]
         if len({*map(output.file_checksum, self.records)}) < len(records):
             text = f"the same numbers as {self.records[0]}; expected one record of each half"
@@ -399,14 +411,14 @@ is a guess: --structure of diagnose, plan and others; complete it by e and clear
                 del names["acceleration1"]
             records[1] = records[1].rename({n: new for n, new in names.items() if n in records[1]})
         try:
-            fits = orchestrate.halves(*records, **self.keywords())
+            fits = orchestrate.halves(*records, **self.function_keywords())
         except InputError as error:
             name, _, text = str(error).partition(": ")
             path = dict(zip(("record", "other"), self.records, strict=False)).get(name, name)
             raise InputError(f"{path}: {text}" if text else name) from None
         fitted = "mass+mass_error frequency+frequency_error damping+damping_error"
         columns = printing.columns_of(fits, f"knocked {fitted} misfit:.1%", form=".5g")
-        print(*printing.table(columns), sep="\n")
+        print(*printing.table_lines(columns), sep="\n")
         print("e = {e:g} and clearance = {clearance:g} m are assumed".format(**fits.attrs))
         if self.output is not None:
             print(self.output)
@@ -431,10 +443,10 @@ they are, the last line says what is missing."""
     def __call__(self) -> None:
         from ..laboratory.columns import BY_ORDER
 
-        reading = self.given(Reading)
+        reading = self.given_options(Reading)
         found = orchestrate.channels(self.record, **reading, output=self.output)
         rows = printing.columns_of(found, "column role known quantity unit rms:.4g")
-        print(*printing.table(rows), sep="\n")
+        print(*printing.table_lines(rows), sep="\n")
         if proposed := found.role.values[found.known.values == BY_ORDER].tolist():
             columns = found.column.values[found.known.values == BY_ORDER].tolist()
             said = [f'"{one}" as {role}' for one, role in zip(columns, proposed, strict=True)]

@@ -69,7 +69,7 @@ def trivial_notes(structure: Structure, question: Keywords, shown: xr.Dataset) -
         yield from clearance_notes(structure, question, shown)
 
 
-def box_motion(structure: Structure, question: Keywords) -> tuple[Any, Any]:
+def box_frequencies_and_amplitudes(structure: Structure, question: Keywords) -> tuple[Any, Any]:
     """Return frequencies, rad/s, and amplitudes, m, of all points asked, as arrays."""
     box = {name: np.ravel(question[name]) for name in set().union(*COMPLETE) & question.keys()}
     if "eta" in box:
@@ -80,9 +80,9 @@ def box_motion(structure: Structure, question: Keywords) -> tuple[Any, Any]:
     return box["frequency"], box["amplitude"]
 
 
-def warn_of_level(structure: Structure, question: Keywords) -> None:
+def warn_of_unusual_level(structure: Structure, question: Keywords) -> None:
     """Warn once if the box's amplitude or acceleration is beyond what shakers have."""
-    frequency, amplitude = box_motion(structure, question)
+    frequency, amplitude = box_frequencies_and_amplitudes(structure, question)
     travel, level = amplitude.max(), (amplitude * frequency**2).max() / GRAVITY
     if travel > SETTINGS.travel or level > SETTINGS.violent:
         warn(
@@ -91,7 +91,7 @@ def warn_of_level(structure: Structure, question: Keywords) -> None:
         )
 
 
-def warn_of_voltage(text: str, voltages: tuple[float, ...], volts: float) -> None:
+def warn_of_unusual_voltage(text: str, voltages: tuple[float, ...], volts: float) -> None:
     """Warn if voltages are far from the one that turns the motor at omega, ``volts``."""
     ratios = [abs(voltage) / volts for voltage in voltages]
     if max(ratios) < SETTINGS.slow or min(ratios) > SETTINGS.fast:
@@ -102,7 +102,7 @@ def warn_of_voltage(text: str, voltages: tuple[float, ...], volts: float) -> Non
         )
 
 
-def print_frequency_notes(arguments: Any, structure: Structure, question: Keywords) -> None:
+def print_and_warn_of_frequencies(arguments: Any, structure: Structure, question: Keywords) -> None:
     if question.get("frequency") is None:
         return
     values = np.ravel(question["frequency"])
@@ -113,7 +113,7 @@ def print_frequency_notes(arguments: Any, structure: Structure, question: Keywor
     if not math.isclose(structure.omega, 1.0):
         warn_of_other_unit(arguments, structure, values.min(), values.max())
         if {"amplitude", "level"} & question.keys():
-            warn_of_level(structure, question)
+            warn_of_unusual_level(structure, question)
     low, high = values.min() / structure.omega, values.max() / structure.omega
     if high > SETTINGS.far or low < 1.0 / SETTINGS.far:
         ends = " to ".join(f"{ratio:.3g}" for ratio in dict.fromkeys((low, high)))
@@ -129,12 +129,12 @@ def warn_of_other_unit(arguments: Any, structure: Structure, first: float, last:
     low, high = (1.0 - SETTINGS.near) * first, (1.0 + SETTINGS.near) * last
     hertz = [getattr(structure, f"f{half}") for half in structure.halves]
 
-    def is_own(factor: float) -> bool:
+    def fits_structure(factor: float) -> bool:
         return any(low <= factor * TURN * each <= high for each in hertz)
 
-    for name, (factor, unit, other) in OTHER_UNIT.items() if not is_own(1.0) else ():
+    for name, (factor, unit, other) in OTHER_UNIT.items() if not fits_structure(1.0) else ():
         text = getattr(arguments, name, None)
-        if text and is_own(factor):
+        if text and fits_structure(factor):
             numbers = " and ".join(f"{each:.4g}" for each in hertz) + " Hz"
             warn(
                 f"--{name} {text}: these are {unit}, and the structure's own frequencies are "
@@ -150,7 +150,7 @@ def clearance_notes(structure: Structure, question: Keywords, shown: xr.Dataset)
     linear = structure.bonded or structure.wall or structure.stroke or not structure.clearance
     if linear or set().union(*COMPLETE) & question.keys() not in COMPLETE:
         return
-    ratio = threshold_over_level(structure, question)
+    ratio = smallest_threshold_over_level(structure, question)
     if ratio <= 1.0:
         return
     if ratio > SETTINGS.unfelt:
@@ -167,9 +167,9 @@ def clearance_notes(structure: Structure, question: Keywords, shown: xr.Dataset)
     )
 
 
-def threshold_over_level(structure: Structure, question: Keywords) -> float:
+def smallest_threshold_over_level(structure: Structure, question: Keywords) -> float:
     """Return the smallest ratio of contact threshold to excitation level, of all points asked."""
-    frequency, amplitude = box_motion(structure, question)
+    frequency, amplitude = box_frequencies_and_amplitudes(structure, question)
     level = orchestrate.contact_threshold(structure, frequency=np.unique(frequency))
     threshold = np.interp(frequency, level.frequency, level.threshold_amplitude)
     return float((threshold / amplitude).min())

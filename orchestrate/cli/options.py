@@ -64,7 +64,7 @@ QUANTITIES = f"""quantities:
 """
 
 
-def list_shipped_sets() -> str:
+def format_shipped_sets() -> str:
     lines = []
     for name, path in sorted(SETS.items()):
         above = path.read_text(encoding="utf-8").partition("\n\n")[0]
@@ -91,22 +91,22 @@ class OfStructure(Options):
         "NAME=VALUE",
     )
 
-    def read_structure(self) -> Structure:
-        structure = Structure._read(self.structure, tables=self.tables)
+    def read_and_report_structure(self) -> Structure:
+        structure = Structure._read(self.structure, tables=self.toml_tables)
         changes = grammar.parse_changes(self.set, structure.wall)
         structure = structure.replace(**changes)
         print_assumptions(structure, self.structure, changes)
-        stated = {"e"} if self.structure in SETS else self.section("structure")
+        stated = {"e"} if self.structure in SETS else self.toml_section("structure")
         if not structure.bonded and "e" not in {*stated, *changes}:
             print(f"assumed: e = {structure.e:g} ({self.structure} has none; --set e=VALUE)")
         return structure
 
     @cached_property
-    def tables(self) -> dict[str, Any]:
+    def toml_tables(self) -> dict[str, Any]:
         return read_tables(resolve_path(self.structure)) if self.structure else {}
 
-    def section(self, name: str) -> dict[str, Any]:
-        return self.tables.get(name, {})
+    def toml_section(self, name: str) -> dict[str, Any]:
+        return self.toml_tables.get(name, {})
 
 
 class OfStored(OfStructure):
@@ -121,25 +121,25 @@ class OfStored(OfStructure):
     def read_structure_and_question(self) -> tuple[Structure, Keywords]:
         if self.start is None:
             self.structure = self.structure or "paper"
-            return self.read_structure(), self.keywords()
-        data = grammar.read_earlier_result("--start", self.start)
-        structure = self.structure_like("--start", self.start, data)
-        return structure, {**self.keywords(), "start": data}
+            return self.read_and_report_structure(), self.function_keywords()
+        data = grammar.load_earlier_result("--start", self.start)
+        structure = self.stated_or_stored_structure("--start", self.start, data)
+        return structure, {**self.function_keywords(), "start": data}
 
-    def structure_like(self, flag: str, path: Any, data: xr.Dataset) -> Structure:
+    def stated_or_stored_structure(self, flag: str, path: Any, data: xr.Dataset) -> Structure:
         """Return the structure asked for, else that of a stored result; print how they differ."""
-        stored = structure_of(flag, path, data)
+        stored = stored_structure(flag, path, data)
         if self.structure:
-            asked = self.read_structure()
+            asked = self.read_and_report_structure()
         else:
             changes = grammar.parse_changes(self.set)
             asked = stored.replace(**changes)
             print_assumptions(asked, "", changes)
-        print_difference(flag, path, stored, asked)
+        print_structure_difference(flag, path, stored, asked)
         return asked
 
 
-def structure_of(flag: str, path: Any, data: xr.Dataset) -> Structure:
+def stored_structure(flag: str, path: Any, data: xr.Dataset) -> Structure:
     from ..running.provenance import describe_dataset
 
     try:
@@ -149,7 +149,7 @@ def structure_of(flag: str, path: Any, data: xr.Dataset) -> Structure:
         raise InputError(f"{flag} {path}: {text}") from None
 
 
-def print_difference(flag: str, path: Any, stored: Structure, asked: Structure) -> None:
+def print_structure_difference(flag: str, path: Any, stored: Structure, asked: Structure) -> None:
     names = (*STRUCTURE, "bonded", "wall")
     pairs = {name: (float(getattr(stored, name)), float(getattr(asked, name))) for name in names}
     texts = [
@@ -180,13 +180,13 @@ def print_assumptions(structure: Structure, source: str, changes: Mapping[str, A
             usual = f"{name} would be {structure.get(name):.4g} Hz, as in the set {source}"
             text = f"expected --set {name}=HZ too, or --set wall=true for one mass before a stop"
             raise InputError(f"--set {own}={changes[own]:g}: {usual}; {text}")
-    texts = [f"{name} = {format_assumed(name, structure.get(name))}" for name in left]
+    texts = [f"{name} = {format_parameter_with_unit(name, structure.get(name))}" for name in left]
     if texts:
         masses = "; only the ratio of the masses acts" if "m2" in left else ""
         print(f"assumed, as in the set {source}: {', '.join(texts)} (--set){masses}")
 
 
-def format_assumed(name: str, value: float) -> str:
+def format_parameter_with_unit(name: str, value: float) -> str:
     """Format a parameter's value with its unit; damping ratios in per cent."""
     if name.startswith("zeta"):
         return f"{100.0 * value:.4g} %"
@@ -207,8 +207,8 @@ class OfPushes(Options):
     force1: float | None = option("amplitude of a force F sin(Omega t) on half 1, N")
     force2: float | None = option("the same on half 2")
 
-    def pushes(self) -> dict[str, float]:
-        return self.given(OfPushes)
+    def given_pushes(self) -> dict[str, float]:
+        return self.given_options(OfPushes)
 
 
 class OfBox(OfPushes):
@@ -227,42 +227,48 @@ class OfBox(OfPushes):
     g: Any = option("the same as peak acceleration in g, held at all frequencies", value="VALUES")
 
     def read_excitation(
-        self, structure: Structure, si: bool = False, one: bool = False, by_level: bool = False
+        self,
+        structure: Structure,
+        needs_metres: bool = False,
+        one_frequency: bool = False,
+        by_level: bool = False,
     ) -> Keywords:
         """Return frequency and amplitude of the box's motion as keywords of the public API.
 
-        With ``by_level`` the level in place of the amplitude, which may have several values.
+        With ``by_level`` the level in place of the amplitude, which may have several values; with
+        ``needs_metres`` the paper's amplitude, 1/eta^2 m, is refused of other structures.
         """
-        self.one_of("amplitude", "g")
+        self.given_option("amplitude", "g")
         levels = grammar.parse_one_or_more("--g", self.g) if by_level else ()
-        name, amplitude = self.frequency_option(), None if by_level else self.read_amplitude()
-        if name is amplitude is None and not by_level and (own := self.excitation_from_file()):
+        name = self.given_frequency_option()
+        amplitude = None if by_level else self.amplitude_or_level()
+        if name is amplitude is None and not by_level and (own := self.take_excitation_from_file()):
             return own
         if name is None:
             text = f"expected one of {option_names(FREQUENCIES)}"
             raise InputError(f"frequency: nothing given; {text}")
         text = getattr(self, name)
-        values = grammar.parse_one_or_more(f"--{name}", text, one)
+        values = grammar.parse_one_or_more(f"--{name}", text, one_frequency)
         to_rad_s = TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * structure.omega
         frequencies = apply_to_each(to_rad_s, values)
         if by_level:
             level = apply_to_each(lambda peak: peak * GRAVITY, levels)
-            return {"frequency": frequencies, "level": level, **self.pushes()}
+            return {"frequency": frequencies, "level": level, **self.given_pushes()}
         if amplitude is None and name != "eta":
             raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
         if amplitude is None:
-            if si and not math.isclose(structure.omega, 1.0):
+            if needs_metres and not math.isclose(structure.omega, 1.0):
                 raise InputError(
                     f"--eta {text}: omega is {structure.omega:g} rad/s; expected --amplitude in m "
                     "or --g with it (1/eta^2 m is the paper's, for omega = 1 rad/s)"
                 )
-            return {"eta": values, **self.pushes()}
+            return {"eta": values, **self.given_pushes()}
         if self.g is not None:
             peak = amplitude * GRAVITY
             amplitude = apply_to_each(lambda value: peak / (value * value), frequencies)
-        return {"frequency": frequencies, "amplitude": amplitude, **self.pushes()}
+        return {"frequency": frequencies, "amplitude": amplitude, **self.given_pushes()}
 
-    def excitation_from_file(self) -> Keywords | None:
+    def take_excitation_from_file(self) -> Keywords | None:
         """Return keywords of the excitation in the structure's file, or None; set ``--phase``."""
         excitation: Any = read(self.structure).get("excitation")
         if excitation is None:
@@ -271,20 +277,20 @@ class OfBox(OfPushes):
             self.phase = excitation.phase
         pushes = {name: getattr(excitation, name) for name in PUSHES if getattr(excitation, name)}
         box = {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
-        return {**box, **pushes, **self.pushes()}
+        return {**box, **pushes, **self.given_pushes()}
 
-    def frequency_option(self) -> str | None:
-        return self.one_of(*FREQUENCIES)
+    def given_frequency_option(self) -> str | None:
+        return self.given_option(*FREQUENCIES)
 
-    def read_amplitude(self) -> float | None:
-        """Return the number of ``--amplitude`` (m) or ``--g`` (g); None if neither is given."""
-        given = self.one_of("amplitude", "g") == "g"
-        return grammar.positive_number("--g", self.g) if given else self.amplitude
+    def amplitude_or_level(self) -> float | None:
+        """Return the number of ``--amplitude`` (m) or ``--g`` (g); None if neither is there."""
+        given = self.given_option("amplitude", "g") == "g"
+        return grammar.parse_positive_number("--g", self.g) if given else self.amplitude
 
     def is_shaken(self) -> bool:
-        return self.frequency_option() is not None or self.read_amplitude() is not None
+        return self.given_frequency_option() is not None or self.amplitude_or_level() is not None
 
-    def has_levels(self) -> bool:
+    def has_several_levels(self) -> bool:
         return self.g is not None and not grammar.is_single_number(self.g)
 
 
@@ -309,28 +315,30 @@ class Over(Options):
         values = self.over and grammar.parse_over_values(self.over, self.values)
         return {"over": self.over, "values": values} if values else {}
 
-    def ask_along_parameter(self, si: bool = False) -> tuple[Structure, Keywords]:
-        structure, varied = self.read_structure(), self.over_arguments()
+    def read_question_along_parameter(
+        self, needs_metres: bool = False
+    ) -> tuple[Structure, Keywords]:
+        structure, varied = self.read_and_report_structure(), self.over_arguments()
         if varied:
-            self.check_over(self.over)
-        by_level = not varied and self.has_levels()
-        box = self.read_excitation(structure, si, bool(varied) or by_level, by_level)
+            self.check_varied_parameter(self.over)
+        by_level = not varied and self.has_several_levels()
+        box = self.read_excitation(structure, needs_metres, bool(varied) or by_level, by_level)
         if by_level:
             varied = {"over": "level", "values": box.pop("level")}
-        return structure, {**self.keywords(), **box, **varied}
+        return structure, {**self.function_keywords(), **box, **varied}
 
-    def check_over(self, over: str) -> None:
+    def check_varied_parameter(self, over: str) -> None:
         if over in FREQUENCIES:
             raise InputError(f"--over {over}: expected --{over} VALUES instead")
         if over in ("amplitude", "g", "level"):
             raise InputError(f"--over {over}: expected --g VALUES at one frequency instead")
-        scaled = self.read_amplitude() is not None and self.eta is not None
+        scaled = self.amplitude_or_level() is not None and self.eta is not None
         if scaled and over in ("m1", "k1", "omega"):
             expected = option_names(UNITS, " or ")
             raise InputError(f"--over {over}: omega varies; expected {expected} instead of --eta")
 
 
-def parse_varied(name: str, limits: str) -> tuple[str, tuple[float, ...]]:
+def parse_continued_parameter(name: str, limits: str) -> tuple[str, tuple[float, ...]]:
     """Return a continued parameter's name in the public API, and its limits in that one's unit."""
     if name == "g":
         raise InputError("--over g: expected --over amplitude, in m, at one frequency")

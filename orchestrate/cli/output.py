@@ -95,9 +95,9 @@ class HowRun(Options):
     heading, rank = "results and running", 5
     takes = "Running: force keep_stale jobs cluster fmu build_folder"
 
-    def running(self, store: Path | None = None) -> Running:
-        running: Any = self.given(HowRun)
-        running |= {"fmu": user_fmus(self.fmu)} if isinstance(self.fmu, list) else {}
+    def running_keywords(self, store: Path | None = None) -> Running:
+        running: Any = self.given_options(HowRun)
+        running |= {"fmu": fmus_by_model(self.fmu)} if isinstance(self.fmu, list) else {}
         return running if store is None else {**running, "store": store}
 
 
@@ -126,13 +126,13 @@ class OfBoth(Results):
     )
 
 
-def unit_note(attributes: Mapping[Any, Any]) -> str:
+def unit_override_note(attributes: Mapping[Any, Any]) -> str:
     """Return a line that says that ``--unit`` was taken in place of a file's unit; or nothing."""
     own, used = attributes.get("unit_in_file", ""), attributes.get("unit", "")
     return f"--unit {used} was used, although the file says {own}" if own else ""
 
 
-def user_fmus(paths: list[Path] | None) -> dict[str, Path]:
+def fmus_by_model(paths: list[Path] | None) -> dict[str, Path]:
     from ..fmu import MODELS, describe
 
     fmus: dict[str, Path] = {}
@@ -156,7 +156,7 @@ def parse_endings(option: str, text: str, known: tuple[str, ...]) -> tuple[str, 
     return names
 
 
-def check_output(folder: Path, option: str = "--output") -> None:
+def check_output_folder(folder: Path, option: str = "--output") -> None:
     """Raise unless a folder is writable or could be made; it is not made yet."""
     if folder.suffix[1:] in ("html", *FORMATS, *PLOTS) and not folder.is_dir():
         raise InputError(f"{option} {folder}: the name of a file; expected a folder")
@@ -176,13 +176,13 @@ def result_name(command: str, sources: Sequence[Any], *asked: Any) -> str:
 
 
 def digest(*arguments: Any) -> str:
-    def other(value: Any) -> Any:
+    def to_json(value: Any) -> Any:
         if hasattr(value, "parameters"):  # of a structure, a drive
             return value.parameters()
         identity = getattr(value, "attrs", {}).get("identity")  # a stored result is its question
         return json.dumps(json.loads(identity)["question"]) if identity else repr(value)
 
-    text = json.dumps(arguments, sort_keys=True, default=other)
+    text = json.dumps(arguments, sort_keys=True, default=to_json)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
 
@@ -194,7 +194,7 @@ def file_checksum(path: Path) -> str:
 
 
 @dataclass(frozen=True)
-class Files:
+class ResultFiles:
     """Paths of one result: its NetCDF file, and its tables and pictures."""
 
     result: Path
@@ -209,14 +209,14 @@ class Files:
     @classmethod
     def from_options(
         cls, arguments: Any, name: str, over: str = "", fresh: bool | None = None
-    ) -> Files:
+    ) -> ResultFiles:
         formats = parse_endings("--format", arguments.format, FORMATS)
         plots = parse_endings("--plot", arguments.plot, PLOTS)
         store = getattr(arguments, "store", None)
         if store is not None and store.suffix != ".nc":
             raise InputError(f"--store {store}: expected a name that ends in .nc")
         result = store or arguments.output / f"{name}.nc"
-        check_output(result.parent)
+        check_output_folder(result.parent)
         if fresh is None:
             from ..running.journal import journal_path  # brings SQLite, which --help does without
 
@@ -229,31 +229,33 @@ class Files:
             slide_shape(size)
         files = cls(result, formats, plots, fresh, chosen, size, over)
         others = [*files.table_paths(), *files.picture_paths()]
-        existing = [path for path in others if existing_files(path)]
+        existing = [path for path in others if existing_table_files(path)]
         if store is not None and existing and not result.exists():
             text = f"{existing[0]} already exists but {result.name} does not"
             raise InputError(f"{text}; choose another --store or delete it")
         return files
 
-    def beside(self, *endings: str) -> Path:
+    def path_with_suffixes(self, *endings: str) -> Path:
         return self.result.with_stem("_".join(filter(None, [self.result.stem, *endings])))
 
     def table_paths(self) -> list[Path]:
-        table = self.beside(self.units)
+        table = self.path_with_suffixes(self.units)
         return [table.with_suffix(f".{ending}") for ending in self.formats if ending != "nc"]
 
     def picture_paths(self, *endings: str) -> list[Path]:
         size = self.size.replace(":", "-")
-        picture = self.beside(self.units, self.over, *endings, size)
+        picture = self.path_with_suffixes(self.units, self.over, *endings, size)
         return [picture.with_suffix(f".{ending}") for ending in self.plots]
 
-    def write(self, data: xr.Dataset, draw: Callable[[], Any] | None = None) -> None:
+    def write_and_print_paths(
+        self, data: xr.Dataset, draw: Callable[[], Any] | None = None
+    ) -> None:
         """Write missing tables and pictures next to the NetCDF file; print all paths."""
         from ..running.formats import write
 
         print(f"{self.result}{'' if self.fresh else ': complete already'}")
         for path in self.table_paths():
-            existing = [] if self.fresh else existing_files(path)
+            existing = [] if self.fresh else existing_table_files(path)
             print(*(existing or sorted(write(data, path))), sep="\n")
         if draw is not None:
             self.write_pictures(draw)
@@ -272,7 +274,7 @@ class Files:
             print(path)
 
 
-def write_unstored_netcdf(files: Files, data: xr.Dataset) -> None:
+def write_unstored_netcdf(files: ResultFiles, data: xr.Dataset) -> None:
     """Write the NetCDF file of a result that was not stored while it was computed."""
     from ..files import make_writable_folder
     from ..running.store import write_netcdf
@@ -281,7 +283,7 @@ def write_unstored_netcdf(files: Files, data: xr.Dataset) -> None:
     write_netcdf(data, files.result)
 
 
-def existing_files(path: Path) -> list[Path]:
+def existing_table_files(path: Path) -> list[Path]:
     """Return the existing files of a table that may be several: ``x.csv``, ``x.eta.csv``."""
     several = path.parent.glob(f"{escape_glob(path.stem)}.*{path.suffix}")
     return [*([path] if path.exists() else []), *sorted(several)]

@@ -11,9 +11,9 @@ import orchestrate
 from ..errors import InputError
 from ..lazy import xr
 from .command import Command, option, option_names
-from .grammar import read_earlier_result
-from .options import OfStored, print_difference, structure_of
-from .output import HowRun, InFolder, InUnits, Reading, check_output
+from .grammar import load_earlier_result
+from .options import OfStored, print_structure_difference, stored_structure
+from .output import HowRun, InFolder, InUnits, Reading, check_output_folder
 
 
 class Build(Command):
@@ -46,7 +46,7 @@ class Build(Command):
         from ..fmu import FORMS, PLAIN_FORMS, build, build_libraries, build_web_kernels, sources_of
 
         if self.folder is not None:
-            check_output(self.folder, "--folder")
+            check_output_folder(self.folder, "--folder")
         forms = PLAIN_FORMS if self.plain else FORMS
         platforms = [name for name in (self.platforms or "").split(",") if name]
         if self.sources_only:
@@ -90,9 +90,9 @@ class Explore(OfStored, Reading, InUnits, Command):
 
         record, branches = self.read_record(), None
         if self.branches is not None:
-            branches = read_earlier_result("--branches", self.branches)
+            branches = load_earlier_result("--branches", self.branches)
         page = explore(
-            self.read_diagram(branches),
+            self.read_sweep_or_structure(branches),
             output=self.output,
             branches=branches,
             record=record,
@@ -106,28 +106,28 @@ class Explore(OfStored, Reading, InUnits, Command):
             webbrowser.open(page.resolve().as_uri())
 
     def read_record(self) -> xr.Dataset | None:
-        reading = self.given(Reading)
+        reading = self.given_options(Reading)
         if self.record is not None:
             return orchestrate.read_record(self.record, **reading)
         if reading:
             raise InputError(f"{option_names(list(reading)[:1])}: expected only with --record")
         return None
 
-    def read_diagram(self, branches: xr.Dataset | None) -> Any:
+    def read_sweep_or_structure(self, branches: xr.Dataset | None) -> Any:
         """Return the sweep of RESULT, or the structure: given, of ``--branches``, or usual."""
         if self.result is not None:
             if self.set or self.structure:
                 raise InputError(f"{self.result} with --structure or --set: expected one of them")
-            data = read_earlier_result("RESULT", self.result)
+            data = load_earlier_result("RESULT", self.result)
             if branches is not None:
-                drawn = structure_of("--branches", self.branches, branches)
-                structure = structure_of("RESULT", self.result, data)
-                print_difference("--branches", self.branches, drawn, structure)
+                drawn = stored_structure("--branches", self.branches, branches)
+                structure = stored_structure("RESULT", self.result, data)
+                print_structure_difference("--branches", self.branches, drawn, structure)
             return data
         if branches is not None:
-            return self.structure_like("--branches", self.branches, branches)
+            return self.stated_or_stored_structure("--branches", self.branches, branches)
         self.structure = self.structure or "paper"
-        return self.read_structure()
+        return self.read_and_report_structure()
 
 
 class Report(InUnits, InFolder, Command):
@@ -148,8 +148,8 @@ class Report(InUnits, InFolder, Command):
     def __call__(self) -> None:
         from ..files import make_writable_folder
 
-        check_output(self.output)
-        answers = [read_earlier_result("FILE", path) for path in self.results]
+        check_output_folder(self.output)
+        answers = [load_earlier_result("FILE", path) for path in self.results]
         page = make_writable_folder(self.output) / f"report_{self.results[0].stem}.html"
         words = {"title": self.title or "", "notes": self.notes or ""}
         print(orchestrate.report(*answers, output=page, **words, units=self.read_units()))
@@ -192,9 +192,9 @@ class Paper(InFolder, HowRun, Command):
 
         folder = Path("results") / ("paper-quick" if self.quick else "paper")
         output = self.output or folder
-        check_output(output)
+        check_output_folder(output)
         figures = None if self.figures is None else self.figures.split(",")
         resolution = QUICK if self.quick else FULL
-        outcome = reproduce(output, resolution, figures, self.running())
+        outcome = reproduce(output, resolution, figures, self.running_keywords())
         lines = [*claim_lines(outcome.found), *outcome.pictures.values(), outcome.report]
         print(*lines, sep="\n")

@@ -52,39 +52,41 @@ def describe(data: xr.Dataset, names: str) -> Iterator[str]:
         if not array.notnull().any():
             continue
         if array.ndim and ("flag_meanings" in array.attrs or array.dtype.kind in "iU"):
-            yield from counts(data, array)
+            yield from count_lines(data, array)
         elif {*array.dims} <= parameters:
             top = data.isel(array.argmax(...))
-            where = ", ".join(parameter_text(top, str(dim)) for dim in reversed(array.dims))
-            yield f"{meaning(array)}: {value_text(top, array.name)}{where and f' at {where}'}"
+            dims = map(str, reversed(array.dims))
+            where = ", ".join(format_scalar_parameter(top, dim) for dim in dims)
+            text = f"{short_meaning(array)}: {format_value(top, array.name)}"
+            yield f"{text} at {where}" if where else text
         else:
             unit, root = str(array.attrs.get("units", "1")), float((array**2).mean()) ** 0.5
             text = units.format_quantity_range(data, float(array.min()), float(array.max()), unit)
             mean = f", rms {units.format_quantity(data, root, unit, '.4g')}" * (
                 "time" in array.dims
             )
-            yield f"{meaning(array)}: {text}{mean}"
+            yield f"{short_meaning(array)}: {text}{mean}"
 
 
-def meaning(array: xr.DataArray) -> str:
+def short_meaning(array: xr.DataArray) -> str:
     if array.name == "xi_rel_max":
         return "largest gap"
     return re.split("[,;:]", str(array.attrs.get("long_name", array.name)))[0]
 
 
-def value_text(data: xr.Dataset, name: Any) -> str:
+def format_value(data: xr.Dataset, name: Any) -> str:
     if name == "xi_rel_max":
         return format_largest_gap(data)
     unit = str(data[name].attrs.get("units", "1"))
     return flag_word(data[name]) or units.format_quantity(data, data[name], unit, ".4g")
 
 
-def parameter_text(data: xr.Dataset, name: str) -> str:
+def format_scalar_parameter(data: xr.Dataset, name: str) -> str:
     value = data[name]
     return format_parameter(data, name, value) if value.dtype.kind in "if" else str(value.item())
 
 
-def counts(data: xr.Dataset, array: xr.DataArray) -> Iterator[str]:
+def count_lines(data: xr.Dataset, array: xr.DataArray) -> Iterator[str]:
     """Yield how often each word or whole number of a variable occurs, where, and what to do."""
     sides, others = [str(d) for d in array.dims if d in SIDES], {*map(str, array.dims)} - {*SIDES}
     along = "".join(others & {*map(str, data.coords)}) if len(others) == 1 else ""
@@ -104,13 +106,13 @@ def counts(data: xr.Dataset, array: xr.DataArray) -> Iterator[str]:
                 which = "".join(f", {side}" for side in case)
                 line += f"{which} at {format_ranges(data, along, part.values, 3)}"
         yield line
-        yield from hints([f"{array.name}: {word}"])
+        yield from hint_lines([f"{array.name}: {word}"])
     if len(known) > MOST_WORDS:
         rest = sum(count for _, count in known[MOST_WORDS:])
         yield f"another {array.name}: {format_share(rest, array.size)}"
 
 
-def hints(words: Iterable[str]) -> Iterator[str]:
+def hint_lines(words: Iterable[str]) -> Iterator[str]:
     """Yield what to do about those words of a result after which more can be done."""
     yield from (f"{word.rpartition(': ')[2]}: {HINTS[word]}" for word in words if word in HINTS)
 
@@ -118,7 +120,7 @@ def hints(words: Iterable[str]) -> Iterator[str]:
 # -- tables ---------------------------------------------------------------------------------------
 
 
-def table(columns: Mapping[str, Iterable[str]], most: int | None = None) -> Iterator[str]:
+def table_lines(columns: Mapping[str, Iterable[str]], most: int | None = None) -> Iterator[str]:
     rows = list(zip(*columns.values(), strict=True))
     shown = [tuple(columns), *rows[:most]]
     widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
@@ -129,16 +131,16 @@ def table(columns: Mapping[str, Iterable[str]], most: int | None = None) -> Iter
         yield f"  ... and {more} more"
 
 
-def listing(data: xr.Dataset, of: str, names: str, form: str = ".6g") -> Iterator[str]:
+def listing_lines(data: xr.Dataset, of: str, names: str, form: str = ".6g") -> Iterator[str]:
     """Yield the table of what a result lists along a dimension, of variables that begin so."""
     if data.sizes.get(of):
         yield f"{of.replace('_', ' ')}s"
-        yield from table(columns_of(data, names, f"{of}_", form))
+        yield from table_lines(columns_of(data, names, f"{of}_", form))
     else:
         yield f"no {of.replace('_', ' ')} in this range"
 
 
-def rows_of(data: xr.Dataset, names: str) -> Columns:
+def stacked_columns_of(data: xr.Dataset, names: str) -> Columns:
     """Return columns of variables, a row for each value of all dimensions of the first one."""
     dims = [*map(str, data[re.split("[ +:]", names)[0]].dims)]
     rows = data.stack(row=dims, create_index=False) if dims else data.expand_dims("row")
@@ -168,7 +170,9 @@ def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g"
         elif array.ndim > 1:
             columns[title] = [", ".join(format(x, form_of_it) for x in row) for row in values]
         elif error:
-            columns[title] = with_error(values / factor, data[error].values / factor, form_of_it)
+            columns[title] = format_with_errors(
+                values / factor, data[error].values / factor, form_of_it
+            )
         elif array.dtype.kind == "f":
             texts = [format(value / factor, form_of_it) for value in values]
             columns[title] = [text.replace("nan", "") for text in texts]
@@ -185,7 +189,7 @@ def impact_lines(data: xr.Dataset) -> Iterator[str]:
         return
     first = int(data.impact_velocity.values.argmax())
     speed = units.format_quantity(data, data.impact_velocity[first], "m/s", ".4g")
-    hardest = f"at {time_text(data, float(data.impact_time[first]))}"
+    hardest = f"at {format_time(data, float(data.impact_time[first]))}"
     if not units.shows_lengths_as_ratios(data):
         hardest = f"{float(data.impulse[first]):.4g} N s {hardest}"
     sticks = int(data.sticks.sum())
@@ -195,14 +199,14 @@ def impact_lines(data: xr.Dataset) -> Iterator[str]:
 # -- parameters and ranges ------------------------------------------------------------------------
 
 
-def time_text(data: xr.Dataset, time: float, form: str = ".4g") -> str:
+def format_time(data: xr.Dataset, time: float, form: str = ".4g") -> str:
     """Format a time in display units, as tau where a result in ratios was asked in none."""
     if units.shows_lengths_as_ratios(data) and not units.display_units_of(data).time:
         return f"tau = {time:{form}}"
     return units.format_quantity(data, time, "s", form)
 
 
-def varied_parameter(data: xr.Dataset) -> str:
+def varied_parameter_name(data: xr.Dataset) -> str:
     others = {"direction", "structure", "attractor"}
     (name,) = {str(dim) for dim in data.impacts_per_period.dims} - others
     return name
@@ -221,7 +225,7 @@ def format_range(data: xr.Dataset, name: str, low: Any, high: Any, form: str = "
     return f"{before} = {numbers} {unit}".rstrip() if before else f"{numbers} {unit}"
 
 
-def format_reach(data: xr.Dataset, name: str) -> str:
+def format_full_range(data: xr.Dataset, name: str) -> str:
     return format_range(data, name, data[name].min(), data[name].max())
 
 
@@ -243,7 +247,7 @@ def parameter_parts(
     return (name, *units.format_number_and_unit(data, value, str(unit), form))
 
 
-def has_flag(values: xr.DataArray, word: str) -> xr.DataArray:
+def flag_mask(values: xr.DataArray, word: str) -> xr.DataArray:
     """Return a Boolean array: where a CF flag variable has the number of a word."""
     number = values.attrs["flag_meanings"].split().index(word)
     return values == values.attrs["flag_values"][number]
@@ -284,7 +288,9 @@ def format_largest_gap(data: xr.Dataset, form: str = ".6g") -> str:
     return ", ".join(parts)
 
 
-def with_error(values: Any, errors: Any, form: str = ".5g", error_form: str = ".2g") -> list[str]:
+def format_with_errors(
+    values: Any, errors: Any, form: str = ".5g", error_form: str = ".2g"
+) -> list[str]:
     """Return numbers with their errors as texts, ``none`` where there is no number."""
     pairs = zip(np.ravel(values).tolist(), np.ravel(errors).tolist(), strict=True)
     return [f"{x:{form}} +- {s:{error_form}}" if math.isfinite(x) else "none" for x, s in pairs]

@@ -10,15 +10,15 @@ from ..lazy import xr
 from ..model import Drive, Structure
 from ..units import format_quantity
 from . import printing
-from .answer import Asked, Overlay, is_curve
+from .answer import FunctionCommand, Overlay, has_several_values
 from .command import Keywords, option, option_names
-from .drive import Driven
+from .drive import DriveCommand
 from .grammar import parse_changes, parse_over_values
 from .options import Beside, OfBox, OfStructure, Over
 from .output import OfBoth, Results, Stored
 
 
-class Simulate(OfStructure, OfBox, Beside, Asked, Stored, Results):
+class Simulate(OfStructure, OfBox, Beside, FunctionCommand, Stored, Results):
     """A motion in time: both masses, gap, contact force, impacts, phase plane and spectrum."""
 
     calls, shows = "simulate", "x1 x2 x_rel a1_abs a2_abs"
@@ -29,13 +29,13 @@ class Simulate(OfStructure, OfBox, Beside, Asked, Stored, Results):
   {program} simulate --eta 1.2 --start 0,0.5,0,0                from a gap of 0.5 m"""
 
 
-def level_columns(data: xr.Dataset) -> printing.Columns:
+def largest_response_columns(data: xr.Dataset) -> printing.Columns:
     """Return the largest response at each level, bonded and delaminated, and where it opens."""
     data = data.transpose("level", "structure", ...)
     others = [dim for dim in data.x1_max.dims if dim not in ("level", "structure")]
     gap = data.x_rel_max.max(others, keep_attrs=True)
     top = data.isel(data.x1_max.argmax(others)).assign(gap=gap)
-    columns = printing.rows_of(top, "x1_max:.4g frequency:.4g gap:.4g")
+    columns = printing.stacked_columns_of(top, "x1_max:.4g frequency:.4g gap:.4g")
     if data.attrs["clearance"] < 0.0:
         opens = (data.x_rel_max > 0.0).any({*others} - {"frequency"})
         rows = opens.stack(row=("level", "structure"), create_index=False).transpose("row", ...)
@@ -44,7 +44,7 @@ def level_columns(data: xr.Dataset) -> printing.Columns:
     return columns
 
 
-class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
+class Resonance(OfStructure, OfBox, Overlay, FunctionCommand, Stored, Results):
     """Resonance curves: amplitude and peak acceleration, bonded against delaminated; at several
     levels (--g FIRST:LAST:STEP), with the level at which a preloaded structure first opens.
     """
@@ -54,29 +54,29 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
   {program} resonance --structure beam --hz 8:20:0.05 --g 0.02
   {program} resonance --structure beam --set clearance=-2e-5 --hz 8:20:0.05 --g 0.02,0.1,0.5
   {program} resonance --eta 0.3:4:0.005 --set e=0.3             the paper's structure"""
-    has_picture = staticmethod(is_curve)
+    has_picture = staticmethod(has_several_values)
 
-    def ask(self) -> tuple[Structure, Keywords]:
-        structure, question = self.read_structure(), self.keywords()
-        if self.has_levels():
+    def read_question(self) -> tuple[Structure, Keywords]:
+        structure, question = self.read_and_report_structure(), self.function_keywords()
+        if self.has_several_levels():
             self.calls = "resonance_levels"
-            if pushes := self.pushes():
+            if pushes := self.given_pushes():
                 raise InputError(f"{option_names(pushes)}: expected one level, --g, with it")
             return structure, {**question, **self.read_excitation(structure, by_level=True)}
-        return structure, {**question, **self.read_excitation(structure, si=True)}
+        return structure, {**question, **self.read_excitation(structure, needs_metres=True)}
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         if "level" in data.dims:
-            yield from printing.table(level_columns(data))
+            yield from printing.table_lines(largest_response_columns(data))
         else:
             if not data.sizes["peak"]:
                 for part in (data.sel(structure=one) for one in data.structure):
                     yield f"{part.structure.item()}:"
                     yield from printing.describe(part, "x1_max x2_max a1_max a2_max x_rel_max")
-            of = f"structure direction {printing.varied_parameter(data)}"
+            of = f"structure direction {printing.varied_parameter_name(data)}"
             largest = "x1_max:.4g x2_max:.4g a1_max:.4g a2_max:.4g x_rel_max:.4g irregular"
-            yield from printing.listing(data, "peak", f"{of} {largest}")
-            yield from printing.listing(data, "jump", f"{of} before:.4g after:.4g")
+            yield from printing.listing_lines(data, "peak", f"{of} {largest}")
+            yield from printing.listing_lines(data, "jump", f"{of} before:.4g after:.4g")
             if data.sizes["jump"]:
                 yield "before, after: the largest gap on both sides of the jump"
         if "lowest_threshold" in data:
@@ -94,7 +94,7 @@ class Resonance(OfStructure, OfBox, Overlay, Asked, Stored, Results):
 CAPTURED = {"quick": 1.53, "beam": 1.45}  # eta0 at which the motor is captured by the resonance
 
 
-class Spectra(OfBox, Driven, Stored, OfBoth):
+class Spectra(OfBox, DriveCommand, Stored, OfBoth):
     """Acceleration spectra, bonded and delaminated (Figure 3)."""
 
     calls = "spectra"
@@ -109,20 +109,20 @@ class Spectra(OfBox, Driven, Stored, OfBoth):
   {program} spectra --eta 0.4,1.047      shaken harmonically instead, at these frequency ratios
   {program} spectra --structure beam --hz 12.5 --g 0.02 --format nc,csv"""
 
-    def ask(self) -> tuple[Any, ...]:
-        of_motor = self.one_of("eta0", "voltage")
-        if not (self.is_shaken() or self.pushes()):
+    def read_question(self) -> tuple[Any, ...]:
+        of_motor = self.given_option("eta0", "voltage")
+        if not (self.is_shaken() or self.given_pushes()):
             self.calls = "drive_spectra"
-            return self.ask_motor()
+            return self.read_motor_question()
         if of_motor is not None:
-            frequency = self.frequency_option() or "amplitude or --g"
+            frequency = self.given_frequency_option() or "amplitude or --g"
             raise InputError(f"--{frequency}: expected without --{of_motor}, which is the motor's")
         self.drive, self.structure = "", self.structure or "paper"
         structure = Structure.from_file(self.structure).replace(**parse_changes(self.set))
-        excitation = self.read_excitation(structure, si=True)
-        return structure, {**self.keywords(), **excitation}
+        excitation = self.read_excitation(structure, needs_metres=True)
+        return structure, {**self.function_keywords(), **excitation}
 
-    def ask_motor(self) -> tuple[Structure, Drive, Keywords]:
+    def read_motor_question(self) -> tuple[Structure, Drive, Keywords]:
         structure, motor = self.read_structure_and_drive()
         eta0 = CAPTURED.get(self.drive) if self.eta0 is None else self.eta0
         voltage = self.voltage
@@ -130,14 +130,16 @@ class Spectra(OfBox, Driven, Stored, OfBoth):
             voltage = eta0 * motor.volts(structure)
         return structure, motor, {"voltage": voltage}
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         lines = data.acceleration.sel(mass=1)
         largest, above = lines.max("order"), lines.where(lines.order > 1.5).max("order")
         part = (above / largest).assign_attrs(units="1")
         shown = data.assign(largest=largest.assign_attrs(lines.attrs), part=part)
         yield "the largest line, and what part of it the largest above the excitation's is"
         speed = "speed:.5g " * ("speed" in data)
-        yield from printing.table(printing.rows_of(shown, f"{speed}largest:.4g part:.2g"))
+        yield from printing.table_lines(
+            printing.stacked_columns_of(shown, f"{speed}largest:.4g part:.2g")
+        )
 
 
 PAPER_RANGE = "0.1:8.0:0.001"  # frequency ratios of Figure 6
@@ -149,12 +151,12 @@ def response_lines(data: xr.Dataset) -> Iterator[str]:
     yield from printing.describe(data, f"{sizes} multiplicity_decided permanent_contact")
     if data.multiplicity.size <= 4:  # such as one value up and down
         names = "xi_rel_max:.4g impacts_per_period:.4g multiplicity multiplicity_decided"
-        yield from printing.table(printing.rows_of(data, names))
-    repeated = printing.has_flag(data.multiplicity_decided, "repeated")
-    yield from printing.counts(data, data.multiplicity.where(repeated))
+        yield from printing.table_lines(printing.stacked_columns_of(data, names))
+    repeated = printing.flag_mask(data.multiplicity_decided, "repeated")
+    yield from printing.count_lines(data, data.multiplicity.where(repeated))
 
 
-class Sweep(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
+class Sweep(OfStructure, OfBox, Over, Overlay, FunctionCommand, Stored, Results):
     """Follow responses along the frequency or another parameter: an orbit diagram."""
 
     calls = "sweep"
@@ -174,18 +176,18 @@ class Sweep(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
   {program} sweep --over e --values 0.05:0.95:0.003 --eta 1.2
   {program} sweep --structure beam --hz 8:20:0.05 --g 0.02 --format nc,csv
   {program} sweep --eta 2.4:2.8:0.002 --overlay branch.nc   with what branch has written"""
-    has_picture = staticmethod(is_curve)
+    has_picture = staticmethod(has_several_values)
 
-    def ask(self) -> tuple[Structure, Keywords]:
+    def read_question(self) -> tuple[Structure, Keywords]:
         if self.over is None and not self.is_shaken():
             self.eta = PAPER_RANGE
         texts = (self.values, self.eta, self.hz, self.rpm, self.frequency, self.g)
         usual = "up" if any(":" in text for text in texts if text) else "given"
-        structure, question = self.ask_along_parameter()
+        structure, question = self.read_question_along_parameter()
         return structure, {**question, "direction": self.direction or usual}
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
-        name = printing.varied_parameter(data)
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
+        name = printing.varied_parameter_name(data)
         if data.sizes[name] == 1:
             yield "one value: no picture"
         yield from response_lines(data)
@@ -197,7 +199,7 @@ class Sweep(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
             yield f"{text} {'at ' * bool(differ.any())}{where}"
 
 
-class Map(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
+class Map(OfStructure, OfBox, Over, Overlay, FunctionCommand, Stored, Results):
     """Responses over two parameters: impacts per period, multiplicity, largest gap, exponent."""
 
     calls = "map"
@@ -216,14 +218,14 @@ class Map(OfStructure, OfBox, Over, Overlay, Asked, Stored, Results):
   {program} map --eta 2.4:2.9:0.02 --over e --values 0.6:0.8:0.02 --overlay border.nc
 Each point starts from rest. The picture has a panel for each quantity."""
 
-    def ask(self) -> tuple[Structure, Keywords]:
-        structure = self.read_structure()
+    def read_question(self) -> tuple[Structure, Keywords]:
+        structure = self.read_and_report_structure()
         if len(self.over) != len(self.values):
             raise InputError("--over and --values: give exactly one --values for each --over")
         for name in self.over:
-            self.check_over(name)
+            self.check_varied_parameter(name)
         twice, by_level = len(self.over) == 2, self.g is not None
-        excitation = self.read_excitation(structure, one=twice, by_level=by_level)
+        excitation = self.read_excitation(structure, one_frequency=twice, by_level=by_level)
         for name, text in zip(self.over, self.values, strict=True):
             if name in excitation or (name == "level" and "amplitude" in excitation):
                 raise InputError(f"--over {name}: twice; expected two parameters")
@@ -233,8 +235,8 @@ Each point starts from rest. The picture has a panel for each quantity."""
                 "map: expected two parameters that vary: a range of frequencies and one of levels "
                 "(--g) or --over with --values, or --over with --values twice at one frequency"
             )
-        return structure, {**self.keywords(), **excitation}
+        return structure, {**self.function_keywords(), **excitation}
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         yield from response_lines(data)
         yield from printing.describe(data, "verdict")

@@ -42,7 +42,7 @@ class SafeStream:
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
 
-    def detach(self) -> None:
+    def flush_or_redirect(self) -> None:
         """Flush; if the stream has failed, redirect its descriptor to ``/dev/null``."""
         self.flush()
         if self.error is not None:
@@ -51,7 +51,7 @@ class SafeStream:
                 os.dup2(nowhere, self._stream.fileno())
                 os.close(nowhere)
 
-    def failure(self) -> str:
+    def failure_reason(self) -> str:
         """Return why output was lost; empty if none was, or the reader closed the pipe."""
         if self.error is None or isinstance(self.error, BrokenPipeError):
             return ""
@@ -69,5 +69,5 @@ def safe_outputs() -> Iterator[SafeStream]:
         yield streams[0]
     finally:
         for stream in streams:
-            stream.detach()
+            stream.flush_or_redirect()
         sys.stdout, sys.stderr = before

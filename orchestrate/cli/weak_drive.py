@@ -15,11 +15,11 @@ from ..lazy import np, xr
 from ..model import Drive, Structure
 from ..units import display_units_of, format_quantity, with_units
 from . import grammar, printing
-from .answer import Asked, Only, Runs
+from .answer import FunctionCommand, Only, Runs
 from .command import Keywords, Options, option
-from .drive import Driven, OfController, OfRamp, OfSchedule, Stepped
+from .drive import DriveCommand, OfController, OfRamp, OfSchedule, Stepped
 from .options import OfStructure, Over
-from .output import Files, OfBoth, Results, Stored, digest, user_fmus
+from .output import OfBoth, ResultFiles, Results, Stored, digest, fmus_by_model
 
 if TYPE_CHECKING:
     from ..weak_drive.couple import CoupleJob
@@ -46,7 +46,7 @@ def draw_couple(
     return draw_ramps(results, with_units(averaged.stationary_curve(*system), units), under, title)
 
 
-class Couple(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
+class Couple(Only, OfSchedule, OfController, Stepped, DriveCommand, OfBoth):
     """The weak drive: structure and motor coupled, the voltage up and down (Figure 2)."""
 
     calls, takes = "couple", "tolerance"
@@ -67,9 +67,11 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
 
     def __call__(self) -> None:
         if self.ssp:
-            structure, motor, question = self.ask()
-            job = self.make_job([*self.states(structure).values()][-1], motor, question)
-            print(self.write_package(self.ssp, motor, job))
+            structure, motor, question = self.read_question()
+            job = self.make_job(
+                [*self.structures_by_state(structure).values()][-1], motor, question
+            )
+            print(self.write_ssp_package(self.ssp, motor, job))
         else:
             super().__call__()
 
@@ -82,7 +84,11 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         return make_couple_job(structure, motor, question["voltage"], scheme, **more)
 
     def compute(
-        self, states: Mapping[str, Any], others: Any, question: Keywords, files: Mapping[str, Files]
+        self,
+        states: Mapping[str, Any],
+        others: Any,
+        question: Keywords,
+        files: Mapping[str, ResultFiles],
     ) -> dict[str, xr.Dataset]:
         from ..fmu import finder
         from ..running.options import RunOptions
@@ -93,22 +99,24 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
             replace(self.make_job(one, others[0], question), name=files[state].result.stem)
             for state, one in states.items()
         ]
-        running = self.running()
+        running = self.running_keywords()
         compute_into_folder(jobs, self.output, RunOptions.from_keywords(running), finder(running))
         self.job, self.stationary = jobs[0], None
         if self.branches:
             delaminated = next(iter(states.values())).as_delaminated()
-            name = f"branches_{'_'.join(self.source_names())}_{digest(delaminated, *others)}.nc"
-            running = self.running(self.output / name)
+            name = (
+                f"branches_{'_'.join(self.source_file_stems())}_{digest(delaminated, *others)}.nc"
+            )
+            running = self.running_keywords(self.output / name)
             self.stationary = orchestrate.drive_branch(delaminated, *others, **running)
         return {state: load_result(files[state].result) for state in states}
 
-    def summaries(self, results: Runs) -> Iterator[str]:
+    def all_summary_lines(self, results: Runs) -> Iterator[str]:
         if self.stationary is not None:
             yield from drive_branch_lines(with_units(self.stationary, self.display_units({})))
-        yield from super().summaries(results)
+        yield from super().all_summary_lines(results)
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         yield from printing.describe(data, "speed passage_time")
         keys = ("missing_over_motor_work", "defects_over_motor_work")
         missing, defects = (float(data.attrs[key]) for key in keys)
@@ -121,28 +129,30 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         half = 0.5 * abs(data.jump_high - data.jump_low)
         shown = data.assign(half=half, eta0=(data.jumps / volts).assign_attrs(units="1"))
         names = "jumps+half:.5f eta0:.5f ramp_voltage:.4f decided no_jump"
-        yield from printing.table(printing.rows_of(shown, names))
+        yield from printing.table_lines(printing.stacked_columns_of(shown, names))
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         return draw_couple(self.picture_title(results), results, self.job, self.stationary)
 
-    def write_more(self, files: Files, question: Keywords, shown: Runs, results: Runs) -> None:
+    def write_further_files(
+        self, files: ResultFiles, question: Keywords, shown: Runs, results: Runs
+    ) -> None:
         if any(data.jumps.notnull().any() for data in results.values()):
             title = self.picture_title(shown)
             draw = partial(orchestrate.plot, *shown.values(), part="jumps", title=title)
             files.write_pictures(draw, "jumps")
 
-    def write_package(self, path: Path, motor: Drive, job: CoupleJob) -> Path:
+    def write_ssp_package(self, path: Path, motor: Drive, job: CoupleJob) -> Path:
         from ..fmu import find
 
-        own = user_fmus(self.fmu)
+        own = fmus_by_model(self.fmu)
         fmus = [find(name, "fmi2", self.build_folder, own.get(name)).path for name in job.models]
         start = {"voltage": job.schedule.voltage(0.0), "speed_start": job.speed_start}
         more: Any = {**start, "fmus": fmus, "version": self.ssp_version}
         return orchestrate.write_ssp(path, job.structure, motor, **more)
 
 
-class Capture(Only, OfRamp, Over, Stepped, OfController, Driven, OfBoth):
+class Capture(Only, OfRamp, Over, Stepped, OfController, DriveCommand, OfBoth):
     """Voltages switched on from rest: which pass the resonance, which are captured."""
 
     calls = "capture"
@@ -153,11 +163,11 @@ class Capture(Only, OfRamp, Over, Stepped, OfController, Driven, OfBoth):
   {program} capture --drive beam --set armature_resistance=120 --voltage 7:10 --speed-gradient
 The motor is switched on at once and followed until its speed has settled."""
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         half = 0.5 * (data.border_high - data.border_low)
-        columns = printing.rows_of(data.assign(half=half), "border+half:.5f above_fold")
-        yield from printing.table(columns)
-        yield from printing.hints([f"above_fold: {one}" for one in {*columns["above_fold"]}])
+        columns = printing.stacked_columns_of(data.assign(half=half), "border+half:.5f above_fold")
+        yield from printing.table_lines(columns)
+        yield from printing.hint_lines([f"above_fold: {one}" for one in {*columns["above_fold"]}])
         yield from printing.describe(data, "passes decision")
 
 
@@ -168,7 +178,7 @@ def first_stored_interval(data: xr.Dataset) -> xr.Dataset:
     return data.isel(time=slice(0, int(breaks[0]) + 1)) if breaks.size else data
 
 
-class Passage(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
+class Passage(Only, OfSchedule, OfController, Stepped, DriveCommand, OfBoth):
     """A run through the resonance at full resolution: speed, motion, power, waterfall."""
 
     calls, takes = "passage", "around"
@@ -179,12 +189,12 @@ class Passage(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
   {program} passage --drive rig --one-way --around 3
   {program} passage --drive beam --voltage 6.5 --duration 10 --speed-control 110"""
 
-    def ask(self) -> tuple[Any, ...]:
+    def read_question(self) -> tuple[Any, ...]:
         from ..weak_drive.schedule import Constant
 
         if self.revolutions < 1:
             raise InputError(f"--revolutions {self.revolutions}: expected a whole number >= 1")
-        structure, motor, question = super().ask()
+        structure, motor, question = super().read_question()
         if self.around is None and not isinstance(question["voltage"], Constant):
             question["around"] = 300.0 / structure.omega
         return structure, motor, question
@@ -197,7 +207,7 @@ class Passage(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
         falls = {state: orchestrate.waterfall(data, **spectra) for state, data in shown.items()}
         return draw_passage(shown, falls, self.picture_title(results))
 
-    def summaries(self, results: Runs) -> Iterator[str]:
+    def all_summary_lines(self, results: Runs) -> Iterator[str]:
         from ..show.passage import format_jumps
 
         for state, data in results.items():
@@ -206,7 +216,7 @@ class Passage(Only, OfSchedule, OfController, Stepped, Driven, OfBoth):
             yield f"{state}: {format_jumps(data)}; {samples}"
 
 
-class JumpVoltages(OfRamp, Over, Stepped, Driven, Stored, OfBoth):
+class JumpVoltages(OfRamp, Over, Stepped, DriveCommand, Stored, OfBoth):
     """Voltages at which the speed jumps, at rate 0 and on ramps of several rates."""
 
     calls, takes = "jump_voltages", ""
@@ -218,23 +228,27 @@ class JumpVoltages(OfRamp, Over, Stepped, Driven, Stored, OfBoth):
   {program} jump-voltages --rate 1e-4,3e-5,1e-5 --one-way
   {program} jump-voltages --over clearance --values 0,1e-5,3e-5 --drive beam --one-way"""
 
-    def ask(self) -> tuple[Any, ...]:
-        structure, motor, question = super().ask()
+    def read_question(self) -> tuple[Any, ...]:
+        structure, motor, question = super().read_question()
         unit = motor.volts(structure) * structure.omega
         rates = [rate * unit for rate in grammar.parse_rates("--rate", self.rate)]
-        more = {"rates": rates, "back": not self.one_way, **self.in_seconds(structure, "settle")}
+        more = {
+            "rates": rates,
+            "back": not self.one_way,
+            **self.options_in_seconds(structure, "settle"),
+        }
         return structure, motor, question | more
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         # a direction in which no ramp went has not been decided
         went = [jump for jump in data.jump.values if data.decided.sel(jump=jump).any()]
-        rows = printing.rows_of(data.sel(jump=went), "jumps+standard_error:.5f decided")
-        yield from printing.table(rows)
+        rows = printing.stacked_columns_of(data.sel(jump=went), "jumps+standard_error:.5f decided")
+        yield from printing.table_lines(rows)
         if (data.decided == "undecided").any():
             yield "undecided by constant voltages; drive-branch shows which motions are stable"
 
 
-def unlocated_changes(leg: xr.Dataset, located: Any) -> str:
+def format_unlocated_changes(leg: xr.Dataset, located: Any) -> str:
     """Return the speeds at which a branch's stability changes without a located bifurcation."""
     at = leg.dropna("point", subset=["voltage"])
     stable, speeds = at.stable.values.astype(int), []
@@ -247,7 +261,7 @@ def unlocated_changes(leg: xr.Dataset, located: Any) -> str:
 
 def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
     rows = data.sortby(["bifurcation_structure", "bifurcation_voltage"])
-    yield from printing.listing(rows, "bifurcation", "structure kind voltage speed")
+    yield from printing.listing_lines(rows, "bifurcation", "structure kind voltage speed")
     if rows.sizes["bifurcation"]:
         yield "at which of them a motor that follows its voltage jumps: jump-voltages, or couple"
     legs = [data.sel(structure=name, leg=leg) for name in data.structure for leg in data.leg]
@@ -262,14 +276,14 @@ def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
             f"{float(a.voltage):.5f} V, {format_quantity(a, a.speed, 'rad/s', '.6g')}" for a in last
         ],
     }
-    unlocated = [unlocated_changes(leg, data.bifurcation_speed.values) for leg in legs]
+    unlocated = [format_unlocated_changes(leg, data.bifurcation_speed.values) for leg in legs]
     if any(unlocated):
         columns["stability changes near, not located (--period)"] = unlocated
-    yield from printing.table(columns)
-    yield from printing.hints(dict.fromkeys(columns["ends by"]))
+    yield from printing.table_lines(columns)
+    yield from printing.hint_lines(dict.fromkeys(columns["ends by"]))
 
 
-class DriveBranch(Driven, Stored, OfBoth):
+class DriveBranch(DriveCommand, Stored, OfBoth):
     """Stationary motions of structure and motor, stable and unstable, and their bifurcations."""
 
     calls = "drive_branch"
@@ -287,12 +301,14 @@ def split_at_commas(texts: Sequence[str] | None) -> tuple[str, ...]:
     return tuple(word for word in ",".join(texts or ()).split(",") if word)
 
 
-def read_values(option: str, texts: Sequence[str]) -> dict[str, Any]:
+def parse_variable_values(option: str, texts: Sequence[str]) -> dict[str, Any]:
     """Return values by name: numbers, true or false; of inputs also files with time and value."""
     found: dict[str, Any] = {}
-    for name, text in grammar.read_pairs(option, texts, PAIR).items():
+    for name, text in grammar.parse_pairs(option, texts, PAIR).items():
         try:
-            found[name] = text == "true" if text in ("true", "false") else grammar.plain_float(text)
+            found[name] = (
+                text == "true" if text in ("true", "false") else grammar.parse_plain_float(text)
+            )
         except ValueError:
             if option != "--input":
                 text = f"{option} {name}={text}: expected a number, true or false"
@@ -301,7 +317,7 @@ def read_values(option: str, texts: Sequence[str]) -> dict[str, Any]:
     return found
 
 
-def variable_lines(drive: Path) -> Iterator[str]:
+def drive_variable_lines(drive: Path) -> Iterator[str]:
     from ..fmu.description import describe
     from ..weak_drive.connection import MOTION, explain_proposal, propose_connections
 
@@ -316,7 +332,7 @@ def variable_lines(drive: Path) -> Iterator[str]:
         "unit": [one.unit or "no unit" for _, one in listed],
         "description": [one.description or "" for _, one in listed],
     }
-    yield from printing.table(columns)
+    yield from printing.table_lines(columns)
     if likely := propose_connections(description):
         links = " ".join(f"{ours}={theirs}" for ours, theirs in likely.items())
         yield f"likely: --connect {links}   (a run checks the sign of the force)"
@@ -355,7 +371,7 @@ class OfDrive(Options):
     record: list[str] = option("variables of the drive that are stored", (), "NAME", many=True)
 
 
-class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
+class Cosimulate(OfStructure, OfDrive, FunctionCommand, Stored, Results):
     """Both FMUs together: the oscillator and a drive of anybody's."""
 
     calls = "cosimulate"
@@ -372,30 +388,30 @@ class Cosimulate(OfStructure, OfDrive, Asked, Stored, Results):
 
     def __call__(self) -> None:
         if self.listed:
-            print(*variable_lines(self.drive), sep="\n")
+            print(*drive_variable_lines(self.drive), sep="\n")
         else:
             super().__call__()
 
-    def ask(self) -> tuple[Structure | None, Keywords]:
+    def read_question(self) -> tuple[Structure | None, Keywords]:
         alone = self.structure == "none"
         if alone and self.set:
             raise InputError("--set: --structure none has no parameters; leave it out")
-        structure = None if alone else self.read_structure()
+        structure = None if alone else self.read_and_report_structure()
         if self.structure == "paper" and not self.set:
             text = "expected one in SI units, as the drive has them, or none for the drive alone"
             raise InputError(f"--structure is missing; {text}")
-        return structure, self.keywords() | {
+        return structure, self.function_keywords() | {
             "drive": str(self.drive),
-            "connect": grammar.read_pairs("--connect", split_at_commas(self.connect), PAIR),
-            "units": grammar.read_pairs("--unit", split_at_commas(self.unit), "NAME=UNIT"),
-            "parameters": read_values("--parameter", self.parameter),
-            "inputs": read_values("--input", self.input),
+            "connect": grammar.parse_pairs("--connect", split_at_commas(self.connect), PAIR),
+            "units": grammar.parse_pairs("--unit", split_at_commas(self.unit), "NAME=UNIT"),
+            "parameters": parse_variable_values("--parameter", self.parameter),
+            "inputs": parse_variable_values("--input", self.input),
             "record": split_at_commas(self.record),
         }
 
-    def summary(self, data: xr.Dataset) -> Iterator[str]:
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         if self.structure == "none":
             yield f"no structure: the drive alone for {float(data.time[-1]):.6g} s"
-        yield from super().summary(data)
+        yield from super().summary_lines(data)
         if data.attrs["inputs_at_start"]:
             yield f"no input was given for {data.attrs['inputs_at_start']}, which stays so"

@@ -205,7 +205,7 @@ def made_sweep(kinds, impacts):
 def test_a_sweep_is_summed_up_by_where_responses_repeat():
     """Made-up: how often, and the three widest ranges of each kind."""
     kinds = np.repeat([1, 0, 1, 2, 1, 0, 1, 0, 1, 0, 1, 0], [9, 2, 20, 6, 8, 3, 7, 1, 5, 1, 4, 1])
-    lines = list(cli.responses.Sweep().summary(made_sweep(kinds, np.ones(len(kinds)))))
+    lines = list(cli.responses.Sweep().summary_lines(made_sweep(kinds, np.ones(len(kinds)))))
     assert "largest gap: xi_Rel = 2 at eta = 1.66" in lines
     assert "undecided: 6 (9 %) at eta = 1.31 to 1.36" in lines
     assert any(line.startswith("undecided: ") and "--transient 5000" in line for line in lines)

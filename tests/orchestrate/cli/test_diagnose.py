@@ -142,7 +142,7 @@ def test_answers_are_stored_and_taken_again_beside_a_refused_record(run, sine, c
     for setting in ("e=0.4", "e=0.6"):
         words = ["diagnose", str(folder / "parted.csv"), "--structure", "beam", "--set", setting]
         command = parse_arguments(words)
-        names.add(command.file_stem(Sweep(command.records[0]), command.read_structure()))
+        names.add(command.file_stem(Sweep(command.records[0]), command.read_and_report_structure()))
     assert len(names) == 2
 
 

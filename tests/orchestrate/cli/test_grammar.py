@@ -37,7 +37,7 @@ def test_every_default_is_that_of_the_function_and_in_the_help():
                 continue
             usual = parameters[name].default
             if usual not in (None, False, inspect.Parameter.empty):
-                assert "(default: " in option.words, (command, name)
+                assert "(default: " in option.help_with_default, (command, name)
                 assert (option.default, type(option.default)) == (usual, type(usual))
                 compared += 1
     assert compared > 40
@@ -81,11 +81,11 @@ def test_help_takes_no_time_whatever_the_encoding(command, seconds, encoding):
 
 
 def of_quantity(name):
-    return lambda option, text: grammar.read_number(option, text, name)
+    return lambda option, text: grammar.parse_number(option, text, name)
 
 
 READ = [
-    (grammar.positive_number, "0.5", 0.5),
+    (grammar.parse_positive_number, "0.5", 0.5),
     (grammar.parse_ends, "1.2:1.65", (1.2, 1.65)),
     (grammar.parse_number_or_ends, "2:1", (2.0, 1.0)),
     (grammar.parse_rates, "1e-4,5e-5", (1e-4, 5e-5)),

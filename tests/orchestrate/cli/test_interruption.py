@@ -32,7 +32,9 @@ def interrupt(*_, **__):
 PLACES = {
     "orchestrate.response.sweep.SweepJob.work": BEGINS_ANEW,
     "orchestrate.running.store.DiskStore.finish": INTERRUPTED,
-    "orchestrate.cli.output.Files.write": f"interrupted: the result is stored; {RESUME}",
+    "orchestrate.cli.output.ResultFiles.write_and_print_paths": (
+        f"interrupted: the result is stored; {RESUME}"
+    ),
 }
 
 

@@ -285,7 +285,7 @@ def test_random_command_lines_end_in_one_line(ask, monkeypatch):
     def stop(*_):
         raise InputError("nothing is computed")
 
-    monkeypatch.setattr("orchestrate.cli.output.HowRun.running", stop)
+    monkeypatch.setattr("orchestrate.cli.output.HowRun.running_keywords", stop)
     chance = random.Random(62)
     for _ in range(80):
         name = chance.choice([one for one in cli.COMMANDS if one not in ("build", "explore")])

@@ -34,17 +34,19 @@ def said(ask, caplog):
 
 def frequency_notes(hertz, **options):
     arguments = SimpleNamespace(structure="mine", set=[], **options)
-    return lambda: notes.print_frequency_notes(arguments, HALVES, {"frequency": TURN * hertz})
+    return lambda: notes.print_and_warn_of_frequencies(
+        arguments, HALVES, {"frequency": TURN * hertz}
+    )
 
 
 def clearance_notes(times):
     given = {"frequency": np.array([TURN * 20.0]), "level": np.array([1.0])}
-    given["level"] = notes.threshold_over_level(PRESSED, given) / times
+    given["level"] = notes.smallest_threshold_over_level(PRESSED, given) / times
     return lambda: notes.clearance_notes(PRESSED, given, xr.Dataset())
 
 
 def voltage_notes(*ratios):
-    return lambda: notes.warn_of_voltage("--voltage x", tuple(6.5 * r for r in ratios), 6.5)
+    return lambda: notes.warn_of_unusual_voltage("--voltage x", tuple(6.5 * r for r in ratios), 6.5)
 
 
 @pytest.mark.parametrize(
@@ -89,10 +91,12 @@ def test_what_is_not_said(caplog, capsys):
     for beam, name, changed in cases:
         given = SimpleNamespace(structure=name, set=changed, frequency="251.3")
         box = {"frequency": beam.omega * one, "amplitude": one / beam.omega}
-        assert not said(functools.partial(notes.print_frequency_notes, given, beam, box), caplog)
+        assert not said(
+            functools.partial(notes.print_and_warn_of_frequencies, given, beam, box), caplog
+        )
         assert bool(capsys.readouterr().out) == (name == "paper" and not changed)
     assert not notes.heavy_mass_note(ratios)
-    assert notes.box_motion(ratios, {"eta": 2.0}) == (2.0, 0.25)
+    assert notes.box_frequencies_and_amplitudes(ratios, {"eta": 2.0}) == (2.0, 0.25)
     for over, count in (("level", 1), ("frequency", 0)):
         assert len([*notes.trivial_notes(HALVES, {"over": over}, shown)]) == count
     asked, play = {"frequency": TURN * 20.0 * one, "level": 0.1 * one}, {"clearance": 1e-4}

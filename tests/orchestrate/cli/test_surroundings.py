@@ -60,8 +60,8 @@ def test_an_output_that_nobody_reads_ends_nothing_and_what_is_lost_is_known(monk
     closed.close()
     for stream, words in ((Broken(), ""), (closed, "closed file")):
         safe = SafeStream(stream)
-        assert safe.write("told") == 4 and words in safe.failure()
-        assert bool(safe.failure()) == bool(words)
+        assert safe.write("told") == 4 and words in safe.failure_reason()
+        assert bool(safe.failure_reason()) == bool(words)
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1251", "cp932"])

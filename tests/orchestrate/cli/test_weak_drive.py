@@ -112,6 +112,6 @@ def test_a_jump_that_is_undecided_is_shown_so():
     jumps, errors = [[1.5, np.nan], [np.nan] * 2], [[1e-4, np.nan], [np.nan] * 2]
     made = {"jumps": jumps, "standard_error": errors, "decided": decided}
     data = xr.Dataset({name: (tuple(each), values) for name, values in made.items()}, each)
-    _, up, down, *_, hint = weak_drive.JumpVoltages().summary(data)
+    _, up, down, *_, hint = weak_drive.JumpVoltages().summary_lines(data)
     assert up.split() == ["bonded", "up", "1.50000", "+-", "0.0001", "by", "held", "voltages"]
     assert down.split() == ["bonded", "down", "none", "undecided"] and "drive-branch" in hint
