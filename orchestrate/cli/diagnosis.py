@@ -117,7 +117,7 @@ what it gives:
             log.info("%s: signs, pictures and page", sweep.path.name)
             same = [one for key, one in records.items() if key.path == sweep.path and key != sweep]
             signs = orchestrate.signs(records[sweep], other=[*others, *same], structure=guess)
-            self.write_files(names[sweep], {"": verdict, "_signs": signs})
+            self.write_and_print_files(names[sweep], {"": verdict, "_signs": signs})
         if refused:
             count = len({one.path for one in records}) + len(refused)
             raise InputError(f"{len(refused)} of {count} records refused: {'; '.join(refused)}")
@@ -198,7 +198,7 @@ what it gives:
         words |= {"guess_file": str(self.structure or "")}
         return {name: text for name, text in words.items() if text}
 
-    def write_files(self, stem: str, answers: dict[str, xr.Dataset]) -> None:
+    def write_and_print_files(self, stem: str, answers: dict[str, xr.Dataset]) -> None:
         units = self.read_record_units()
         for ending, answer in answers.items():
             files = ResultFiles.from_options(self, f"{stem}{ending}", fresh=True)

@@ -36,7 +36,7 @@ from .options import (
     Over,
     parse_continued_parameter,
 )
-from .output import ResultFiles, Results, Stored, result_name
+from .output import ResultFiles, Results, Stored, result_file_stem
 
 
 class Lyapunov(OfStructure, OfBox, Over, FunctionCommand, Stored, Results):
@@ -321,11 +321,11 @@ The excitation says where a first orbit is looked for; without it that is the lo
         print(f"{text}, constant along the branch; its bifurcations are those of any amplitude")
         self.g, self.amplitude = None, amplitude
 
-    def branch_excitation(self, structure: Structure, over: str, begun: bool) -> Keywords:
+    def branch_excitation(self, structure: Structure, over: str, has_start: bool) -> Keywords:
         name, amplitude = self.given_frequency_option(), self.amplitude_or_level()
-        if over == "frequency" and amplitude is None and not begun:
+        if over == "frequency" and amplitude is None and not has_start:
             raise InputError(f"--over {self.over}: expected --amplitude in m with it")
-        if name is None and (begun or over in ("eta", "frequency")):
+        if name is None and (has_start or over in ("eta", "frequency")):
             given = {} if amplitude is None else {"amplitude": amplitude}
             return given | self.given_pushes()
         excitation = self.read_excitation(structure, one_frequency=True)
@@ -396,7 +396,7 @@ structure and excitation are those of that branch."""
                 print(f"number {number} is not followed: {reason}")
         if not curves:
             raise InputError(f"--start {self.start}: no bifurcation that can be followed")
-        name = result_name("border_all", self.source_file_stems(), structure, question)
+        name = result_file_stem("border_all", self.source_file_stems(), structure, question)
         shown = [with_units(curve, self.display_units(question)) for curve in curves]
         files = ResultFiles.from_options(self, name, fresh=True)
         files.write_pictures(partial(orchestrate.plot, *shown))

@@ -263,7 +263,7 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Funct
   {program} analyse shock.nc --show shock --damping 0.05 --format nc,csv"""
 
     def __call__(self) -> None:
-        names = output.parse_endings("--show", self.show, tuple(ANALYSES))
+        names = output.parse_known_words("--show", self.show, tuple(ANALYSES))
         ResultFiles.from_options(self, "", fresh=True)  # before records are read
         settings = self.settings_by_analysis(names)
         self.paths = self.paths_by_label()

@@ -146,7 +146,7 @@ def fmus_by_model(paths: list[Path] | None) -> dict[str, Path]:
     return fmus
 
 
-def parse_endings(option: str, text: str, known: tuple[str, ...]) -> tuple[str, ...]:
+def parse_known_words(option: str, text: str, known: tuple[str, ...]) -> tuple[str, ...]:
     """Parse a list such as ``png,pdf`` into a tuple of known names; ``none`` is empty."""
     names = () if text == "none" else tuple(dict.fromkeys(part.strip() for part in text.split(",")))
     for name in names:
@@ -169,7 +169,7 @@ def check_output_folder(folder: Path, option: str = "--output") -> None:
 # -- names ----------------------------------------------------------------------------------------
 
 
-def result_name(command: str, sources: Sequence[Any], *asked: Any) -> str:
+def result_file_stem(command: str, sources: Sequence[Any], *asked: Any) -> str:
     stems = [Path(source).stem for source in sources]
     own = [match[1] if (match := OWN_NAME.fullmatch(stem)) else stem for stem in stems]
     return f"{command}_{'_'.join(own)}_{digest(*asked)}"
@@ -210,8 +210,8 @@ class ResultFiles:
     def from_options(
         cls, arguments: Any, name: str, over: str = "", fresh: bool | None = None
     ) -> ResultFiles:
-        formats = parse_endings("--format", arguments.format, FORMATS)
-        plots = parse_endings("--plot", arguments.plot, PLOTS)
+        formats = parse_known_words("--format", arguments.format, FORMATS)
+        plots = parse_known_words("--plot", arguments.plot, PLOTS)
         store = getattr(arguments, "store", None)
         if store is not None and store.suffix != ".nc":
             raise InputError(f"--store {store}: expected a name that ends in .nc")

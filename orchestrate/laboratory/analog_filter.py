@@ -62,7 +62,7 @@ class AnalogFilter:
         response: Complexes = 0.5 * (there + mirrored).sum(axis=-1)
         return response
 
-    def compute_output(
+    def apply(
         self, signal: PolynomialSignal, impulse_times: Floats, impulses: Floats, times: Floats
     ) -> Floats:
         """Compute the output at equally spaced times, from rest at the first time."""

@@ -97,18 +97,15 @@ TEXTS = {  # what a field is that is no number
 }
 
 
-def column_patterns_of_face(number: str, number_pattern: str) -> dict[str, str]:
+def column_patterns_of_face(number: str, pattern: str) -> dict[str, str]:
     """Return regular expressions of a face's column names in a resonance curve, by quantity."""
-    motion, alone = (
-        f"(?:{MOTION}|{RATIO}){number_pattern}",
-        "|order|harmonic" if number == "1" else "",
-    )
+    motion, alone = f"(?:{MOTION}|{RATIO}){pattern}", "|order|harmonic" if number == "1" else ""
     return {
         f"amplitude{number}": f"{motion}|(?:{MOTION}|{RATIO}){number}order1",
-        f"phase{number}": f"phase{number_pattern}",
+        f"phase{number}": f"phase{pattern}",
         f"amplitude{number}_order2": f"(?:{motion}order{alone})2",
         f"amplitude{number}_order3": f"(?:{motion}order{alone})3",
-        f"floor{number}": f"(?:floor|noise){number_pattern}",
+        f"floor{number}": f"(?:floor|noise){pattern}",
     }
 
 
@@ -200,9 +197,7 @@ class ColumnAssignment:
             return
         proposed = {n: i for n, i in self.indices.items() if self.known[n] == BY_ORDER}
         said = [f'"{table.columns[i].name}" as {SHORT_NAMES[n]}' for n, i in proposed.items()]
-        unread = [
-            f'"{table.columns[i].name}"' for i in unassigned_column_indices(table, self.indices)
-        ]
+        unread = [f'"{table.columns[i].name}"' for i in unassigned_columns(table, self.indices)]
         texts = [f"read {BY_ORDER}: {', '.join(said)}" if said else ""]
         texts += [f"not read: {', '.join(unread)}" if unread else ""]
         if text := "; ".join(filter(None, texts)):
@@ -213,7 +208,7 @@ class ColumnAssignment:
     def suggest_arguments(self, table: Columns) -> str:
         """Return a text with arguments that read unassigned columns as the missing channels."""
         missing = [name for name in list(CHANNELS)[:3] if name not in self.indices]
-        new = dict(zip(missing, unassigned_column_indices(table, self.indices), strict=False))
+        new = dict(zip(missing, unassigned_columns(table, self.indices), strict=False))
         names = [column.name for column in table.columns]
         unique = {i: name if names.count(name) == 1 else i for i, name in enumerate(names)}
         indices = {name: i for name, i in (self.indices | new).items() if name != "time"}
@@ -411,7 +406,7 @@ def warn_of_lines_left_out(table: Columns) -> None:
         warnings.warn(f"{table.path}, {text}", UserWarning, stacklevel=4)
 
 
-def unassigned_column_indices(table: Columns, indices: Mapping[str, int]) -> list[int]:
+def unassigned_columns(table: Columns, indices: Mapping[str, int]) -> list[int]:
     """Return the indices of unassigned columns that may be channels by their unit, or have none."""
     units = {"", *ACCELERATIONS, *SPEEDS, *LENGTHS, *VOLTAGES}
     return [
@@ -457,7 +452,7 @@ def assign_columns_by_name(table: Columns) -> ColumnAssignment:
             expected = "expected accelerations over time; read_curve reads resonance curves"
             raise InputError(f"{table.path}: {text}; {expected}")
     known = dict.fromkeys(indices, BY_NAME)
-    rest = unassigned_column_indices(table, indices)
+    rest = unassigned_columns(table, indices)
     channels = (*rest, *(i for name, i in indices.items() if name != "time"))
     if len({bool(table.columns[i].unit) for i in channels}) != 1:
         return ColumnAssignment(indices, known)

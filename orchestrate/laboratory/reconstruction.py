@@ -61,34 +61,32 @@ class Motion:
             steady_box_acceleration(history),
         )
 
-    def _driving_derivatives(self, channel: str, times: Floats) -> Floats:
+    def _driving_series(self, channel: str, times: Floats) -> Floats:
         """Compute a channel of the excitation and its derivatives, shape (n, 4)."""
-        return (
-            self.pieces.derivatives_at(times)
-            if channel == self.drives
-            else np.zeros((len(times), 4))
-        )
+        if channel != self.drives:
+            return np.zeros((len(times), 4))
+        return self.pieces.derivatives_at(times)
 
-    def displacement_derivatives(self, states: Floats, touching: Flags, times: Floats) -> Floats:
+    def displacement_series(self, states: Floats, touching: Flags, times: Floats) -> Floats:
         """Compute displacements and their derivatives, shape (ORDER + 2, 2, n), by (6)."""
         series = np.empty((ORDER + 2, 2, len(times)))
         series[:2] = states.T.reshape(2, 2, -1)
-        box, forces = self.box_acceleration_derivatives(times), self.force_derivatives(times)
+        box, forces = self.box_series(times), self.force_series(times)
         for n in range(ORDER):
             accelerations = self.mass_accelerations(series[n], series[n + 1], touching, forces[n])
             series[n + 2] = accelerations - box[n]
         return series
 
-    def box_acceleration_derivatives(self, times: Floats) -> Floats:
+    def box_series(self, times: Floats) -> Floats:
         """Compute the box's acceleration and its derivatives, shape (ORDER, n)."""
-        derivatives = pad_to_order(self._driving_derivatives("box_acceleration", times))
+        derivatives = pad_to_order(self._driving_series("box_acceleration", times))
         derivatives[0] += self.steady
         return derivatives
 
-    def force_derivatives(self, times: Floats) -> Floats:
+    def force_series(self, times: Floats) -> Floats:
         """Compute the forces on both masses and their derivatives, shape (ORDER, 2, n)."""
         return np.stack(
-            [pad_to_order(self._driving_derivatives(name, times)) for name in FORCES], axis=1
+            [pad_to_order(self._driving_series(name, times)) for name in FORCES], axis=1
         )
 
     def mass_accelerations(
@@ -106,12 +104,11 @@ class Motion:
         self, states: Floats, touching: Flags, times: Floats, lengths: Floats
     ) -> Floats:
         """Compute the states later by given lengths of time, shape (n, 4), by Taylor series."""
-        series = self.displacement_derivatives(states, touching, times)
-        return np.concatenate(
-            [evaluate_taylor(series, lengths), evaluate_taylor(series[1:], lengths)]
-        ).T
+        series = self.displacement_series(states, touching, times)
+        parts = series, series[1:]
+        return np.concatenate([evaluate_taylor(part, lengths) for part in parts]).T
 
-    def taylor_step_count(self, length: float) -> int:
+    def step_count(self, length: float) -> int:
         """Return the number of equal steps in which Taylor series cover a length of time."""
         s = self.structure
         alone = [(s.m1, s.k1, s.d1), (s.m2, s.k2, s.d2)]
@@ -128,22 +125,20 @@ class Motion:
         hit = np.arange(len(times)) >= len(self.times)
         order = np.lexsort([~hit, times])  # a sample at an impact is after it
         ends = np.flatnonzero(touch[order[:-1]] & ~before[order[1:]])
-        times_of_release = [self._release_time(times[order[i]], times[order[i + 1]]) for i in ends]
-        return np.array(times_of_release)
+        return np.array([self._release_time(times[order[i]], times[order[i + 1]]) for i in ends])
 
     def _release_time(self, begin: float, end: float) -> float:
         """Return when the contact force first falls below 0, s; ``begin`` if it does not."""
         state = self._state_at(begin)
         touching = np.array([True])
-        mesh = np.linspace(begin, end, 1 + self.taylor_step_count(end - begin))
+        mesh = np.linspace(begin, end, 1 + self.step_count(end - begin))
         nodes = self.pieces.nodes
         mesh = np.union1d(mesh, nodes[(nodes > begin) & (nodes < end)])
         for start, stop in zip(mesh[:-1], mesh[1:], strict=True):
-            series = self.displacement_derivatives(state, touching, np.array([start]))[:, :, 0]
-            forces = self.force_derivatives(np.array([start]))[:, :, 0]
-            root = first_time_below_zero(
-                *self._contact_force_series_and_scale(series, forces), stop - start
-            )
+            series = self.displacement_series(state, touching, np.array([start]))[:, :, 0]
+            forces = self.force_series(np.array([start]))[:, :, 0]
+            force, scale = self._contact_force_and_scale(series, forces)
+            root = first_time_below_zero(force, scale, stop - start)
             if root is not None:
                 return float(start + root)
             state = self.states_later(state, touching, np.array([start]), np.array([stop - start]))
@@ -156,30 +151,23 @@ class Motion:
         touching = self.touching[index : index + 1]
         inside = (self.impact_times > now) & (self.impact_times <= time)
         for i in np.flatnonzero(inside):
-            mesh = np.linspace(
-                now, self.impact_times[i], 1 + self.taylor_step_count(float(self.times[1]))
-            )
+            count = self.step_count(float(self.times[1]))
+            mesh = np.linspace(now, self.impact_times[i], 1 + count)
             for start, stop in zip(mesh[:-1], mesh[1:], strict=True):
-                state = self.states_later(
-                    state, touching, np.array([start]), np.array([stop - start])
-                )
-            state, touching = (
-                self.states_after_impulses(state, self.impulses[[i]]),
-                self.sticks[[i]],
-            )
+                at, length = np.array([start]), np.array([stop - start])
+                state = self.states_later(state, touching, at, length)
+            state, touching = self.after_impulses(state, self.impulses[[i]]), self.sticks[[i]]
             now = float(self.impact_times[i])
         return state
 
-    def states_after_impulses(self, states: Floats, impulses: Floats) -> Floats:
+    def after_impulses(self, states: Floats, impulses: Floats) -> Floats:
         """Return copies of states after impulses (15), which push mass 1 back and mass 2 on."""
         after = states.copy()
         after[:, 2] -= impulses / self.structure.m1
         after[:, 3] += impulses / self.structure.m2
         return after
 
-    def _contact_force_series_and_scale(
-        self, series: Floats, forces: Floats
-    ) -> tuple[Floats, float]:
+    def _contact_force_and_scale(self, series: Floats, forces: Floats) -> tuple[Floats, float]:
         """Compute the contact force (18) and its derivatives, and the scale of its terms."""
         s = self.structure
         own = s.k1 * series[:-2, 0] + s.d1 * series[1:-1, 0] - forces[:, 0]
@@ -238,7 +226,7 @@ class SmoothAccelerations:
 def solve_smooth_accelerations(motion: Motion, sample_rate: float) -> SmoothAccelerations:
     """Solve the equations of motion between the samples; return the smooth accelerations."""
     steps = math.floor(float(motion.times[-1]) * sample_rate * (1.0 + 1e-14))
-    parts = motion.taylor_step_count(1.0 / sample_rate)
+    parts = motion.step_count(1.0 / sample_rate)
     grid = np.arange(steps * parts + 1) / (sample_rate * parts)
     grid = grid[grid <= motion.times[-1]]
     times = grid[::parts]
@@ -249,10 +237,8 @@ def solve_smooth_accelerations(motion: Motion, sample_rate: float) -> SmoothAcce
     starts = nodes[:-1]
     states, touching, error = integrate_between_samples(motion, nodes, releases)
     drive = PolynomialSignal(starts, nodes[1:], motion.pieces.derivatives_at(starts))
-    series, forces = (
-        motion.displacement_derivatives(states, touching, starts),
-        motion.force_derivatives(starts),
-    )
+    series = motion.displacement_series(states, touching, starts)
+    forces = motion.force_series(starts)
     felt = np.stack(
         [
             motion.mass_accelerations(
@@ -289,21 +275,19 @@ def integrate_between_samples(
         now = order[low:high]
         last = now - 1
         moved = motion.states_later(states[last], touching[last], nodes[last], lengths[last])
-        states[now] = motion.states_after_impulses(moved, impulses[now])
+        states[now] = motion.after_impulses(moved, impulses[now])
         touching[now] = (touching[last] | begins[now]) & ~ends[now]
     last = np.append(np.flatnonzero(rank == 0)[1:] - 1, count - 1)
     moved = motion.states_later(states[last], touching[last], nodes[last], lengths[last])
-    moved = motion.states_after_impulses(moved, impulses[last + 1])
+    moved = motion.after_impulses(moved, impulses[last + 1])
     target = np.searchsorted(motion.times, nodes[last + 1])
     exact = (target < len(motion.times)) & (
         motion.times[np.minimum(target, len(motion.times) - 1)] == nodes[last + 1]
     )
-    return states, touching, largest_acceleration_difference(motion, moved[exact], target[exact])
+    return states, touching, acceleration_mismatch(motion, moved[exact], target[exact])
 
 
-def largest_acceleration_difference(
-    motion: Motion, states: Floats, samples: NDArray[np.int_]
-) -> float:
+def acceleration_mismatch(motion: Motion, states: Floats, samples: NDArray[np.int_]) -> float:
     """Return the largest difference between accelerations by states and stored ones, m/s2."""
     difference = (states - motion.states[samples]).T.reshape(2, 2, -1)
     touching = motion.touching[samples]

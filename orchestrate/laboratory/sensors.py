@@ -234,24 +234,15 @@ def filtered_reading(
     """Compute what a sensor's filter reads on the box or on a mass, m/s2, or of a force, N."""
     structure, share, box = motion.structure, sensor.participation, parts.drive
     if name == motion.drives:
-        return sensor.analog_filter().compute_output(
-            box, motion.impact_times[:0], EMPTY, parts.times
-        )
+        return sensor.analog_filter().apply(box, motion.impact_times[:0], EMPTY, parts.times)
     if motion.drives in FORCES:  # the box is at rest
         box = replace(box, derivatives=0.0 * box.derivatives)
     if name == "acceleration1":
-        cells, jumps = (
-            acceleration_at_sensor(parts.mass1, box, share),
-            -motion.impulses / structure.m1,
-        )
+        mass, jumps = parts.mass1, -motion.impulses / structure.m1
     else:
-        cells, jumps = (
-            acceleration_at_sensor(parts.mass2, box, share),
-            motion.impulses / structure.m2,
-        )
-    return sensor.analog_filter().compute_output(
-        cells, motion.impact_times, share * jumps, parts.times
-    )
+        mass, jumps = parts.mass2, motion.impulses / structure.m2
+    signal, times = acceleration_at_sensor(mass, box, share), motion.impact_times
+    return sensor.analog_filter().apply(signal, times, share * jumps, parts.times)
 
 
 def acceleration_at_sensor(

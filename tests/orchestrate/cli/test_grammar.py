@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 import orchestrate
 from orchestrate import cli
 from orchestrate.cli import grammar
-from orchestrate.cli.output import result_name
+from orchestrate.cli.output import result_file_stem
 from orchestrate.errors import InputError
 from orchestrate.model.structure import Structure
 
@@ -153,7 +153,7 @@ CHANGES = [
 def test_another_question_or_structure_has_another_name():
     asked = [(Structure(), ASKED), (Structure(e=0.7 + 1e-15), ASKED)]
     asked += [(Structure(), ASKED | change) for change in CHANGES]
-    names = {result_name("sweep", ["own/my beam.toml"], *one) for one in asked}
+    names = {result_file_stem("sweep", ["own/my beam.toml"], *one) for one in asked}
     assert len(names) == len(asked)
     assert all(name.startswith("sweep_my beam_") and len(name) == 20 for name in names)
 
