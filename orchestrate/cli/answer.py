@@ -16,7 +16,7 @@ from ..model import Structure
 from ..units import ALIKE, Units, with_readable_lengths, with_units
 from .command import Command, Keywords, Options, option, option_names
 from .grammar import load_earlier_result
-from .notes import print_and_warn_of_frequencies, trivial_notes
+from .notes import print_and_warn_of_frequencies, trivial_question_notes
 from .options import UNITS
 from .output import ResultFiles, digest, result_file_stem, write_unstored_netcdf
 from .printing import describe, impact_lines
@@ -135,7 +135,7 @@ class FunctionCommand(Command):
         chosen = self.display_units(question)
         in_units = {state: with_units(data, chosen) for state, data in results.items()}
         shown = dict(zip(in_units, with_readable_lengths(*in_units.values()), strict=True))
-        notes = trivial_notes(structure, question, [*shown.values()][-1]) if alone else ()
+        notes = trivial_question_notes(structure, question, [*shown.values()][-1]) if alone else ()
         print(*notes, *self.all_summary_lines(shown), sep="\n")
         self.print_units_note(*shown.values())
         for state, data in in_units.items():

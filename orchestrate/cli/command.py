@@ -229,7 +229,7 @@ class Command(Options, ABC):
         return value
 
     def function_keywords(self) -> Keywords:
-        arguments = is_needed_by_argument(self.calls)
+        arguments = required_by_argument(self.calls)
         found: Keywords = {}
         for name, (one, kind, of) in self.options().items():
             if of is type(self) and name in arguments:
@@ -262,7 +262,7 @@ class Command(Options, ABC):
 # -- options from a public function ----------------------------------------------------------------
 
 
-def is_needed_by_argument(function: str) -> dict[str, bool]:
+def required_by_argument(function: str) -> dict[str, bool]:
     """Return of each argument of a public function or class whether it has no default."""
     parameters = inspect.signature(getattr(orchestrate, function)).parameters.values()
     return {one.name: one.default is inspect.Parameter.empty for one in parameters}

@@ -112,7 +112,7 @@ what it gives:
         names = {one: self.file_stem(one, guess) for one in records}
         verdicts = self.compute_verdicts(records, names, guess, others) if records else {}
         for sweep, verdict in verdicts.items():
-            shown = with_units(verdict, self.read_record_units())
+            shown = with_units(verdict, self.record_display_units())
             print(*self.verdict_lines(sweep, shown), sep="\n")
             log.info("%s: signs, pictures and page", sweep.path.name)
             same = [one for key, one in records.items() if key.path == sweep.path and key != sweep]
@@ -199,7 +199,7 @@ what it gives:
         return {name: text for name, text in words.items() if text}
 
     def write_and_print_files(self, stem: str, answers: dict[str, xr.Dataset]) -> None:
-        units = self.read_record_units()
+        units = self.record_display_units()
         for ending, answer in answers.items():
             files = ResultFiles.from_options(self, f"{stem}{ending}", fresh=True)
             if ending:  # the verdict is stored already

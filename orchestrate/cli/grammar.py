@@ -101,30 +101,30 @@ def numbers_reader(
     return make_reader(expected, split)
 
 
-def split_state(_: str, text: str) -> tuple[float, ...]:
+def numbers_of_state(_: str, text: str) -> tuple[float, ...]:
     pairs = zip(("x1", "x2", "v1", "v2"), text.split(","), strict=True)
     return tuple(parse_quantity(name, part) for name, part in pairs)
 
 
-def split_plane_side(_: str, text: str) -> tuple[str, float, float, int]:
+def values_of_plane_side(_: str, text: str) -> tuple[str, float, float, int]:
     name, first, last, count = (part.strip() for part in text.split(","))
     return name, parse_quantity(name, first), parse_quantity(name, last), parse_plain_int(count)
 
 
-def split_breakpoints(_: str, text: str, unit: float = 1.0) -> tuple[tuple[float, float], ...]:
+def pairs_of_breakpoints(_: str, text: str, unit: float = 1.0) -> tuple[tuple[float, float], ...]:
     pairs = [tuple(map(parse_plain_float, part.split(":"))) for part in text.split(",")]
     if not all(len(pair) == 2 and all(map(math.isfinite, pair)) for pair in pairs):
         raise ValueError(text)
     return tuple((frequency, unit * value) for frequency, value in pairs)
 
 
-def split_density(name: str, text: str) -> tuple[tuple[float, float], ...]:
+def pairs_of_density(name: str, text: str) -> tuple[tuple[float, float], ...]:
     """Parse a density over frequency in (m/s2)^2/Hz, or in g2/Hz with that unit behind it."""
     numbers = text.removesuffix("g2/Hz")
-    return split_breakpoints(name, numbers, 1.0 if numbers == text else GRAVITY**2)
+    return pairs_of_breakpoints(name, numbers, 1.0 if numbers == text else GRAVITY**2)
 
 
-def split_orders(_: str, text: str) -> float | tuple[float, ...]:
+def numbers_of_orders(_: str, text: str) -> float | tuple[float, ...]:
     orders = tuple(map(parse_plain_float, text.split(",")))
     return orders if "," in text else orders[0]
 
@@ -134,12 +134,12 @@ parse_ends = numbers_reader("FIRST:LAST, two numbers such as 1.2:1.65", ":", (2,
 parse_number_or_ends = numbers_reader("a number, or FIRST:LAST such as 1.2:1.65", ":", (1, 2))
 parse_rates = numbers_reader("a number > 0, or several such as 1e-4,5e-5,2.5e-5", positive=True)
 parse_sensor = numbers_reader("HZ or HZ:RATE, such as 10000:25600", ":", (1, 2))
-parse_state = make_reader(STATE, split_state)
-parse_breakpoints = make_reader(BREAKPOINTS, split_breakpoints)
-parse_density = make_reader(f"{BREAKPOINTS}, or 10:2e-3,200:2e-3g2/Hz", split_density)
-parse_orders = make_reader("a number, or a list such as 0.5,1,2", split_orders)
+parse_state = make_reader(STATE, numbers_of_state)
+parse_breakpoints = make_reader(BREAKPOINTS, pairs_of_breakpoints)
+parse_density = make_reader(f"{BREAKPOINTS}, or 10:2e-3,200:2e-3g2/Hz", pairs_of_density)
+parse_orders = make_reader("a number, or a list such as 0.5,1,2", numbers_of_orders)
 parse_plane_side = make_reader(
-    "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60 or x_rel,0,20um,60", split_plane_side
+    "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60 or x_rel,0,20um,60", values_of_plane_side
 )
 Ends = Annotated[tuple[float, ...] | None, parse_ends]
 Bandwidth = Annotated[tuple[float, ...] | None, parse_sensor]

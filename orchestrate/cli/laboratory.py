@@ -17,7 +17,7 @@ from ..model import Shaker, Structure
 from ..units import Units
 from . import grammar, output, printing
 from .answer import FunctionCommand, Runs
-from .command import Command, Keywords, Options, is_needed_by_argument, option, option_names
+from .command import Command, Keywords, Options, option, option_names, required_by_argument
 from .options import Beside, OfSensors, OfStructure
 from .output import Reading, ResultFiles, digest, unit_override_note
 
@@ -107,7 +107,7 @@ class OfExcitation(Options):
             raise InputError(
                 f"excitation: {words} given; expected one of {option_names(EXCITATIONS)}"
             )
-        takes = {name: is_needed_by_argument(kind.calls) for name, kind in EXCITATIONS.items()}
+        takes = {name: required_by_argument(kind.calls) for name, kind in EXCITATIONS.items()}
         leveled = [name for name, kind in EXCITATIONS.items() if kind.level]
         owners = {**dict.fromkeys(LEVELS, leveled), "column": ["record"]}
         for name in given.keys() - EXCITATIONS.keys() - owners.keys():
@@ -304,7 +304,7 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Funct
         return results
 
     def display_units(self, question: Keywords) -> Units:
-        return self.read_record_units()
+        return self.record_display_units()
 
     def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         yield ANALYSES[self.analysis][1]
@@ -334,7 +334,7 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Funct
 
     def settings_by_analysis(self, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
         chosen = self.given_options(Settings)
-        takes = {name: is_needed_by_argument(row[0]) for name, row in ANALYSES.items()}
+        takes = {name: required_by_argument(row[0]) for name, row in ANALYSES.items()}
         owners = {one: [name for name in takes if one in takes[name]] for one in chosen}
         self.refuse_without(owners, names, "--show ")
         return {name: {o: chosen[o] for o in chosen if o in takes[name]} for name in names}

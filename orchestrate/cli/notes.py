@@ -56,7 +56,9 @@ def heavy_mass_note(structure: Structure) -> str:
     return f"{text}: masses are in kg (150 g is 0.15, or 150g)"
 
 
-def trivial_notes(structure: Structure, question: Keywords, shown: xr.Dataset) -> Iterator[str]:
+def trivial_question_notes(
+    structure: Structure, question: Keywords, shown: xr.Dataset
+) -> Iterator[str]:
     varied = isinstance(question.get("level"), tuple) or question.get("over") == "level"
     if varied and not structure.has_scale:
         nothing = ", ".join(f"{name} = 0" for name in OF_LENGTH)

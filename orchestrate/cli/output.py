@@ -42,7 +42,7 @@ class Reading(Options):
         also="--columns",
     )
 
-    def read_record_units(self) -> Units:
+    def record_display_units(self) -> Units:
         own = self.unit if self.unit in FACTORS["acceleration"] else ""
         return self.read_units().with_defaults(Units(acceleration=own))
 

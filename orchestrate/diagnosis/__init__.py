@@ -20,7 +20,7 @@ module                   idea
 :mod:`.multistart`       the search for a hypothesis's numbers, from many starts
 :mod:`.misfit`           the soft misfit of residuals, and a linear model of these around a minimum
 :mod:`.standard_errors`  standard errors from simulated noise and from blocks of windows
-:mod:`.even_orders`      whether faces open: order 2 above its floor, two faces that move apart
+:mod:`.opening_measures` whether faces open: order 2 above its floor, two faces that move apart
 :mod:`.impact_timing`    when in the period something strikes, and by that what does
 :mod:`.search_job`       all searches of a record as a job, in parallel
 :mod:`.fit`              the numbers of a structure from a record

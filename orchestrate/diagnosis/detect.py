@@ -23,18 +23,18 @@ from ..running.job import Table
 from ..running.options import Running
 from ..running.runner import compute_dataset, compute_datasets
 from .decision_rule import DELAMINATED, NOT_SEEN, Beam, Findings
-from .even_orders import order_2_thresholds, smallest_visible_openings
 from .evidence import Participation
 from .fit import Results, checked_delaminated_guess, checked_free_parameters, checked_record_data
 from .hypotheses import FREE
 from .impact_timing import measure_strikes
+from .opening_measures import order_2_thresholds, smallest_visible_openings
 from .search_job import (
     RecordData,
     SearchJob,
     cached_channels,
-    cached_even_orders,
     cached_evidence,
     cached_face_difference,
+    cached_opening_measures,
     cached_orders,
 )
 from .settings import Changes, Settings, checked_settings
@@ -275,7 +275,7 @@ class DetectJob(SearchJob):
 
     def dataset(self, table: Table) -> xr.Dataset:
         results, beam = Results.from_table(self, table), self.beam()
-        findings, even = beam.records[len(self.others[0])], results.even_orders
+        findings, even = beam.records[len(self.others[0])], results.opening_measures
         whole, channels = cached_orders(self.data), cached_channels(self.data)
         every, coordinates = results.order_variables_and_coordinates()
         same = WiringSettings(clipped=findings.settings.clipped)
@@ -360,7 +360,7 @@ def is_hypothesis_stated(results: Results, verdict: str) -> NDArray[np.bool_]:
 def record_findings(data: RecordData, guess: Structure, is_guessed: bool) -> Findings:
     """Collect the quantities that the decision rule needs from a record."""
     evidence, channels = cached_evidence(data), cached_channels(data)
-    even = cached_even_orders(data)
+    even = cached_opening_measures(data)
     shut = SoundStructure.from_structure(guess).f
     opening = smallest_visible_openings(evidence, guess.m1, guess.m2)
     observed = evidence.frequency[np.isfinite(opening)]

@@ -24,9 +24,9 @@ from ..running.options import Running
 from ..running.runner import compute_dataset
 from .curve_evidence import CurveData
 from .decision_rule import DELAMINATED, factor_outside_range
-from .even_orders import EvenOrders, even_orders
 from .evidence import FITTED_ORDERS, Evidence, Participation, checked_participation
 from .hypotheses import FREE, REPORTED, Hypothesis
+from .opening_measures import OpeningMeasures, measure_opening
 from .order_windows import checked_base_and_faces
 from .search_job import RecordData, SearchJob, cached_orders
 from .settings import SETTINGS, Changes, Settings, checked_settings
@@ -261,13 +261,13 @@ class Results:
         return cls(job, fitted=real + 1j * imaginary, **part)
 
     @property
-    def even_orders(self) -> EvenOrders:
+    def opening_measures(self) -> OpeningMeasures:
         """Order 2 of the record beyond that of the fitted bonded structure."""
-        return even_orders(self.job.evidence, self.fitted[0])
+        return measure_opening(self.job.evidence, self.fitted[0])
 
     def reason(self) -> str:
         """Return a sentence that says why the halves' numbers are stated or not."""
-        even = self.even_orders
+        even = self.opening_measures
         size = f"order 2 is up to {100 * even.ratio_at_largest_excess:.2g} % of order 1"
         if not np.isfinite(self.job.evidence.measured_orders[:, 1]).any():
             if even.is_opening_seen:
@@ -325,7 +325,7 @@ class Results:
         for row in range(len(self.values)):
             known, covariance = self.reported_values_and_covariance(row)
             errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-            unclear, is_open = self.why_undetermined(row), self.even_orders.is_opening_seen
+            unclear, is_open = self.why_undetermined(row), self.opening_measures.is_opening_seen
             for (name, number), deviation in zip(known.items(), errors, strict=True):
                 column = list(REPORTED).index(name)
                 asked[row, column] = 1.0
@@ -415,5 +415,4 @@ END_COLUMNS = (
 
 
 def text_coordinate(dimension: str, values: Sequence[str], words: str) -> Variable:
-    """Return a coordinate of texts along a dimension, with its long name."""
     return (dimension, list(values), {"long_name": words})

@@ -89,7 +89,6 @@ class Sound(Hypothesis):
     extra: ClassVar[dict[str, tuple[float, float]]] = {}
 
     def bounds(self, evidence: Evidence) -> dict[str, tuple[float, float]]:
-        """Return the bounds: half to twice the resonance, the damping, and those of ``extra``."""
         f = evidence.resonance
         low, high = (math.log(zeta) for zeta in DAMPING_RANGE)
         return {"f": (0.5 * f, 2.0 * f), "log_zeta": (low, high), **self.extra}

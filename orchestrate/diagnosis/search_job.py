@@ -18,11 +18,11 @@ from ..laboratory.pieces import Floats
 from ..model import Structure
 from ..running.job import Job, Table
 from .curve_evidence import COARSE_SAMPLES, CurveData
-from .even_orders import EvenOrders, even_orders
 from .evidence import Evidence
 from .hypotheses import SOUND, Delaminated, DelaminatedWithClearance, Hypothesis, Onset
 from .misfit import misfit
 from .multistart import Search, Solution, difference_step, with_distinct_misfits, without_neighbours
+from .opening_measures import OpeningMeasures, measure_opening
 from .order_windows import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, compute_orders
 from .settings import SETTINGS, Settings
 from .standard_errors import Estimate, estimate_with_errors
@@ -92,19 +92,19 @@ def cached_coarse_evidence(data: RecordData | CurveData) -> Evidence:
 
 
 @lru_cache(maxsize=8)
-def cached_even_orders(data: RecordData | CurveData) -> EvenOrders:
+def cached_opening_measures(data: RecordData | CurveData) -> OpeningMeasures:
     """Return order 2 of a record beyond that of a bonded structure, by a short fit."""
     evidence = cached_evidence(data)
     search = Search(SOUND[0], evidence)
     best = search.find_minima(SOUND[0].starts(evidence))[0]
     motion = SOUND[0].displacements(best.values, evidence, None)
-    return even_orders(evidence, evidence.sensor_orders(motion))
+    return measure_opening(evidence, evidence.sensor_orders(motion))
 
 
 @lru_cache(maxsize=8)
 def cached_face_difference(data: RecordData) -> float:
     """Return the faces' difference over its threshold; 0 if two modes of a sound beam make it."""
-    even, modes = cached_even_orders(data), SOUND[-1]
+    even, modes = cached_opening_measures(data), SOUND[-1]
     if even.is_order_2_seen or even.largest_sensor_difference <= 1.0:
         return even.largest_sensor_difference
     coarse = Search(modes, cached_coarse_evidence(data))
@@ -117,7 +117,7 @@ def cached_face_difference(data: RecordData) -> float:
 def cached_onset(data: RecordData | CurveData) -> Onset | None:
     """Return where order 2 begins and the bonded fit of the windows without it, or None."""
     evidence = cached_evidence(data)
-    even = even_orders(evidence, np.zeros_like(evidence.measured_orders))
+    even = measure_opening(evidence, np.zeros_like(evidence.measured_orders))
     loud = even.ratio > even.threshold
     silent = ~loud & np.isfinite(even.ratio)
     if not loud.any() or silent.sum() < MIN_WINDOWS:
@@ -145,13 +145,12 @@ class SearchJob(Job):
 
     @property
     def evidence(self) -> Evidence:
-        """Evidence of the record or the resonance curve."""
         return cached_evidence(self.data)
 
     @property
     def is_worth_a_search(self) -> bool:
         """Whether two masses are searched: only of an opening their numbers are stated."""
-        return cached_even_orders(self.data).is_opening_seen
+        return cached_opening_measures(self.data).is_opening_seen
 
     @property
     def hypotheses(self) -> tuple[Hypothesis, ...]:

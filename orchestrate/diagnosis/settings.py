@@ -40,7 +40,7 @@ class Settings:
     # slower half, but for what a guess misses: 1.23; loose clamps make 1.4 to 1.7
     guess_factor: float = 1.3
 
-    # -- what counts as seen: see `even_orders` --
+    # -- what counts as seen: see `opening_measures` --
     # order 2 over the noise, over the floor between the orders (which impacts raise too), and over
     # order 1 (sensors and bases that are not linear make less)
     order2_noise: float = 5.0

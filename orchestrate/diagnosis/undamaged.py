@@ -40,7 +40,7 @@ class SoundStructure:
 
     @classmethod
     def fit_to_record(
-        cls, frequency: Floats, response: Floats, channels: Channels, force: bool = False
+        cls, frequency: Floats, response: Floats, channels: Channels, is_forced: bool = False
     ) -> SoundStructure:
         """Fit the oscillator whose acceleration is nearest to a record's."""
         from scipy.optimize import least_squares
@@ -50,7 +50,7 @@ class SoundStructure:
 
         def from_logarithms(logs: Floats) -> SoundStructure:
             one = cls(*np.exp(logs).tolist())
-            return one.with_gains_under_force(frequency, response) if force else one
+            return one.with_gains_under_force(frequency, response) if is_forced else one
 
         def response_residuals(logs: Floats) -> Floats:
             rest = (from_logarithms(logs).response(frequency) - response).ravel()

@@ -104,17 +104,17 @@ def text_by_channel(
 
 
 def number_by_channel(
-    name: str, argument: ByChannel, channels: Sequence[str], smallest: float = 0.0
+    name: str, argument: ByChannel, channels: Sequence[str], smallest_size: float = 0.0
 ) -> dict[str, float]:
-    """Return numbers by channel; raise unless their sizes are from ``smallest`` to ``LARGEST``."""
+    """Return numbers by channel; raise unless their sizes are in a range, up to `LARGEST`."""
     numbers = {}
     for channel, value in expand_by_channel(name, argument, channels).items():
         try:
             numbers[channel] = float(value)
         except NOT_NUMBERS:
             numbers[channel] = math.nan
-        if not smallest <= abs(numbers[channel]) <= LARGEST:
-            sizes = f"of sizes from {smallest:g} to {LARGEST:g}, such as face1=-1"
+        if not smallest_size <= abs(numbers[channel]) <= LARGEST:
+            sizes = f"of sizes from {smallest_size:g} to {LARGEST:g}, such as face1=-1"
             raise InputError(f"{name} = {argument!r}: expected numbers {sizes}")
     return numbers
 

@@ -292,11 +292,11 @@ def acceleration_factor(name: str, unit: str, frequency: Floats, level: Floats) 
     return np.asarray(QUANTITIES[power][plain] * (TURN * frequency) ** power)
 
 
-def make_lags_negative(first: Floats, phase: Floats) -> tuple[Floats, str]:
+def make_lags_negative(amplitude: Floats, phase: Floats) -> tuple[Floats, str]:
     """Return phases that are negative where a face lags, and what was done with their sign."""
     wrapped = np.angle(np.exp(1j * phase))
     if not np.isfinite(phase).any():
         return wrapped, ""
-    if np.nansum(first**2 * np.sin(phase)) > 0.0:
+    if np.nansum(amplitude**2 * np.sin(phase)) > 0.0:
         return -wrapped, "positive phases taken as lags"
     return wrapped, "negative phases taken as lags"

@@ -43,7 +43,7 @@ SUBJECTS = {
     "orchestrate/diagnosis/settings.py": (
         f"{DIAGNOSIS}/test_thresholds.py",
         f"{DIAGNOSIS}/test_verdicts.py",
-        f"{DIAGNOSIS}/test_even_orders.py",
+        f"{DIAGNOSIS}/test_opening_measures.py",
         f"{DIAGNOSIS}/test_efforts.py",
     ),
     "orchestrate/diagnosis/impact_timing.py": (f"{DIAGNOSIS}/test_impact_timing.py",),

@@ -98,7 +98,7 @@ def test_what_is_not_said(caplog, capsys):
     assert not notes.heavy_mass_note(ratios)
     assert notes.box_frequencies_and_amplitudes(ratios, {"eta": 2.0}) == (2.0, 0.25)
     for over, count in (("level", 1), ("frequency", 0)):
-        assert len([*notes.trivial_notes(HALVES, {"over": over}, shown)]) == count
+        assert len([*notes.trivial_question_notes(HALVES, {"over": over}, shown)]) == count
     asked, play = {"frequency": TURN * 20.0 * one, "level": 0.1 * one}, {"clearance": 1e-4}
     for more, over, count in (({}, {}, 1), ({"stroke": 2e-3}, {}, 0), ({}, {"over": "e"}, 0)):
         beam = HALVES.replace(**play, **more)

@@ -11,7 +11,7 @@ from orchestrate.diagnosis.detect import DetectJob, beam_job, record_findings, s
 from orchestrate.diagnosis.fit import checked_record_data
 from orchestrate.diagnosis.hypotheses import FREE
 from orchestrate.diagnosis.multistart import Search, Solution
-from orchestrate.diagnosis.search_job import cached_even_orders
+from orchestrate.diagnosis.search_job import cached_opening_measures
 from orchestrate.diagnosis.settings import SETTINGS
 from tests.benches.bench import Bench
 from tests.benches.excitation import Swept
@@ -134,7 +134,7 @@ def test_a_sound_beam_that_twists_between_two_sensors_shows_no_opening():
     far = bench.measure(halves.delaminated(Faces(clearance=0.02)), seed=3)[0]
     data = [checked_record_data(one) for one in (twisted, far)]
     beams = [Beam((record_findings(one, guess(f1=42.0, f2=50.0), True),)) for one in data]
-    assert all(cached_even_orders(one).largest_sensor_difference > 10.0 for one in data)
+    assert all(cached_opening_measures(one).largest_sensor_difference > 10.0 for one in data)
     assert [beam.verdict() for beam in beams] == ["no opening seen", "undecided"]
     assert "Two modes of a sound beam do not describe" in beams[1].reason()
     second = orchestrate.fit(twisted, guess(f1=42.0, f2=50.0), hypothesis="two modes", **LIMIT)

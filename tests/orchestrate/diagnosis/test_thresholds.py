@@ -10,11 +10,11 @@ import pytest
 from orchestrate.diagnosis import search_job
 from orchestrate.diagnosis.decision_rule import DELAMINATED, NOT_SEEN, UNDECIDED, Beam
 from orchestrate.diagnosis.detect import is_hypothesis_stated
-from orchestrate.diagnosis.even_orders import even_orders, order_2_thresholds
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fit import Results
 from orchestrate.diagnosis.hypotheses import Delaminated, DryFriction
 from orchestrate.diagnosis.multistart import Solution
+from orchestrate.diagnosis.opening_measures import measure_opening, order_2_thresholds
 from orchestrate.diagnosis.search_job import SearchJob
 from orchestrate.diagnosis.settings import SETTINGS
 from orchestrate.diagnosis.standard_errors import contact_covariance, squares_beyond_noise
@@ -139,7 +139,9 @@ def windows(one, other=None, noise=0.0, floor=0.0):
 )
 def test_each_threshold_of_order_2(noise, floor, order2, seen):
     evidence = windows((1.0, order2), noise=noise, floor=floor)
-    assert even_orders(evidence, np.zeros_like(evidence.measured_orders)).is_order_2_seen == seen
+    assert (
+        measure_opening(evidence, np.zeros_like(evidence.measured_orders)).is_order_2_seen == seen
+    )
 
 
 @pytest.mark.parametrize(
@@ -153,11 +155,13 @@ def test_each_threshold_of_faces_that_move_apart(other, apart):
     """A difference in order 1 that goes to and fro is not one of gains."""
     turns = (-1.0) ** np.arange(40)
     order1 = 1.0 + (other[0] - 1.0) * turns
-    assert (even_orders_of(windows((1.0, 0.5), (order1, other[1]))) > 1.0) == apart
+    assert (face_difference_of(windows((1.0, 0.5), (order1, other[1]))) > 1.0) == apart
 
 
-def even_orders_of(evidence):
-    return even_orders(evidence, np.zeros_like(evidence.measured_orders)).largest_sensor_difference
+def face_difference_of(evidence):
+    return measure_opening(
+        evidence, np.zeros_like(evidence.measured_orders)
+    ).largest_sensor_difference
 
 
 def test_little_moves_below_a_tenth_of_the_largest_order_1():

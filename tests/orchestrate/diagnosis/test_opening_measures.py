@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate.diagnosis.even_orders import (
-    even_orders,
+from orchestrate.diagnosis.opening_measures import (
+    measure_opening,
     order_2_thresholds,
     scaled_sensor_difference,
     smallest_visible_openings,
@@ -30,7 +30,7 @@ def test_faces_move_apart_where_their_order_2_differs(opposite):
         rows[f"acceleration{name}"] = gain * (np.sin(phase + 0.4) + order2) + noise
     base = 0.1 * np.sin(2.0 * np.pi * (26.0 + 0.8 * time) * time)
     evidence = record_evidence(orchestrate.record(time=time, box_acceleration=base, **rows))
-    even = even_orders(evidence, np.zeros_like(evidence.measured_orders))
+    even = measure_opening(evidence, np.zeros_like(evidence.measured_orders))
     assert even.is_order_2_seen and even.is_opening_seen
     assert (
         (even.largest_sensor_difference > 1.5)
@@ -58,6 +58,6 @@ def test_what_would_have_been_seen_is_not_below_an_opening_that_was_not(sensors)
     record, motion = bench.measure(halves.delaminated(faces), seed=3)
     gap, evidence = float(motion.largest_gap.max()), record_evidence(record)
     assert gap > 1e-5, "it opened"
-    assert not even_orders(evidence, np.zeros_like(evidence.measured_orders)).is_order_2_seen
+    assert not measure_opening(evidence, np.zeros_like(evidence.measured_orders)).is_order_2_seen
     stated = smallest_visible_openings(evidence, halves.m1, halves.m2)
     assert gap < np.nanmax(stated) < 5.0 * gap

@@ -1,4 +1,4 @@
-"""Whether faces open: order 2 above its floor, or two faces whose order 1 differs."""
+"""Whether faces open: order 2 above its threshold, or two faces whose orders differ."""
 
 from __future__ import annotations
 
@@ -17,14 +17,15 @@ ORDER_2_OF_OPENING = 0.14
 
 
 @dataclass(frozen=True)
-class EvenOrders:
+class OpeningMeasures:
     """Hold order 2 beyond what a linear structure makes of the base's, with its threshold."""
 
     # over order 1, root mean squares of neighbouring windows, of the sensor that is furthest above
     # the threshold from which an order counts as seen; NaN where little moves
     ratio: Floats
     threshold: Floats
-    apart: Floats  # difference of two sensors' order 1 or 2 over its threshold; NaN with one sensor
+    # difference of two sensors' order 1 or 2 over its threshold; NaN with one sensor
+    difference: Floats
 
     @property
     def largest_excess(self) -> float:
@@ -48,10 +49,10 @@ class EvenOrders:
     @property
     def largest_sensor_difference(self) -> float:
         """Largest difference of two sensors over its threshold; 0 with one sensor."""
-        return float(np.nanmax(self.apart)) if np.isfinite(self.apart).any() else 0.0
+        return float(np.nanmax(self.difference)) if np.isfinite(self.difference).any() else 0.0
 
 
-def even_orders(evidence: Evidence, bonded: Complexes) -> EvenOrders:
+def measure_opening(evidence: Evidence, bonded: Complexes) -> OpeningMeasures:
     """Compute order 2 of a record beyond that of a bonded structure, and its threshold."""
     beyond = evidence.measured_orders[:, 1] - bonded[:, 1]
     power = average_neighbours(np.nan_to_num(np.abs(beyond) ** 2))
@@ -61,7 +62,8 @@ def even_orders(evidence: Evidence, bonded: Complexes) -> EvenOrders:
     excess[quiet] = np.nan
     chosen = np.argmax(np.nan_to_num(excess / threshold), axis=0)
     take = (chosen, np.arange(len(chosen)))
-    return EvenOrders(excess[take], threshold[take], scaled_sensor_difference(evidence, threshold))
+    difference = scaled_sensor_difference(evidence, threshold)
+    return OpeningMeasures(excess[take], threshold[take], difference)
 
 
 def order_2_thresholds(evidence: Evidence) -> Floats:
