@@ -187,12 +187,12 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
     if kind in ("wav", "lvm", "tdms"):
         raise InputError(f"{path}: {kind.upper()} is only read; expected .csv, .uff, .mat or .nc")
     if kind == "csv":
-        return write_whole(path, lambda temporary: write_csv(temporary, columns))
+        return write_atomically(path, lambda temporary: write_csv(temporary, columns))
     if kind == "uff":
-        return write_whole(path, lambda temporary: write_uff(temporary, columns, rate, binary))
+        return write_atomically(path, lambda temporary: write_uff(temporary, columns, rate, binary))
     if kind == "mat":
-        return write_whole(path, lambda temporary: write_mat(temporary, columns, rate))
-    return write_whole(path, lambda temporary: data.to_netcdf(temporary, engine="netcdf4"))
+        return write_atomically(path, lambda temporary: write_mat(temporary, columns, rate))
+    return write_atomically(path, lambda temporary: data.to_netcdf(temporary, engine="netcdf4"))
 
 
 def file_kind(path: Path) -> str:
