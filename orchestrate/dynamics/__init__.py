@@ -11,6 +11,7 @@ module                           idea
 :mod:`.lyapunov`                 largest exponents with errors: periodic, neutral or chaotic
 :mod:`.lyapunov_spectrum`        all four exponents, and the dimension
 :mod:`.settled_motion`           settled motions, and whether two of them are the same
+:mod:`.settling`                 responses run until they settle, with all thresholds
 :mod:`.clusters`                 whether irregular responses belong to one attractor
 :mod:`.decision`                 to which motion a response settles: the one rule
 :mod:`.global_continuation`      which attractors along a parameter are the same

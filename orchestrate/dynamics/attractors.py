@@ -20,17 +20,16 @@ from ..response.questions import Point, SeriesQuestion, Values, require_delamina
 from ..response.signatures import as_given, question
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
-from .clusters import (
-    ABOUT,
-    FEATURES,
+from .clusters import FEATURES
+from .decision import MotionDecider
+from .global_continuation import MatchedAttractors, match_attractors, open_instance_pair
+from .settling import (
     RUN_LENGTHS,
     AttractorSettings,
     SettledResponse,
-    SettlingRun,
+    SettlingSettings,
     run_until_settled,
 )
-from .decision import MotionDecider
-from .global_continuation import MatchedAttractors, continue_attractors, instance_pair
 
 Floats = NDArray[np.float64]
 ATTRACTOR = "attractor: periodic first, then by periods, impacts per period, largest gap"
@@ -46,10 +45,13 @@ DECIDED_BY = (
     "or other starts still leave such an irregular motion"
 )
 LARGEST = 1e24  # m, of a box of starts
+SETTLED_TO = (
+    "what responses have settled to; mean and deviation are those of the samples of the gap"
+)
 COLUMNS = (*OF_ATTRACTORS, "multiplier", "how", "share", "state")
 
 
-def half_widths(name: str, value: ArrayLike | None) -> Numbers | None:
+def checked_half_widths(name: str, value: ArrayLike | None) -> Numbers | None:
     """Return the user's half width(s) of the box of starts, m, or None; raise unless positive."""
     scale = checked_numbers(name, value)
     each = scale if isinstance(scale, tuple) else () if scale is None else (scale,)
@@ -62,7 +64,7 @@ def half_widths(name: str, value: ArrayLike | None) -> Numbers | None:
 class AttractorsJob(SeriesQuestion):
     """Job of :func:`orchestrate.attractors`: random starts at each value of a parameter."""
 
-    settings: SettlingRun
+    settings: SettlingSettings
     replaced: ClassVar[tuple[str, ...]] = RUN_LENGTHS
     family: ClassVar[tuple[str, ...]] = FAMILY
     chunk_size: ClassVar[int] = 240
@@ -90,37 +92,39 @@ class AttractorsJob(SeriesQuestion):
 
     def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
         """Run starts until they settle, a row each; at the last item group them to attractors."""
-        with instance_pair(fmus[OSCILLATOR]) as instances:
+        with open_instance_pair(fmus[OSCILLATOR]) as instances:
             if previous is not None:
-                return self.gather_attractors(instances, previous)
+                return self.group_starts_into_attractors(instances, previous)
             rows = []
             for index, group in itertools.groupby(items, lambda item: item[0]):
                 decider = MotionDecider(*instances, self.series.points[index], self.settings)
                 starts = self.draw_starts(decider, index)
-                rows += settled_rows(decider, starts[[number for _, number in group]])
+                rows += settle_starts(decider, starts[[number for _, number in group]])
             return settled_table(rows)
 
-    def draw_starts(self, decider: MotionDecider, index: int) -> NDArray[np.float64]:
-        point, seed = decider.point, (self.seed, index)
+    def draw_starts(self, decider: MotionDecider, value_index: int) -> NDArray[np.float64]:
+        """Draw the random starts at one value; without ``scale`` first run from rest for it."""
+        point, seed = decider.point, (self.seed, value_index)
         if self.scale is not None:
-            scale = self.scale[index] if isinstance(self.scale, tuple) else self.scale
-            return random_starts(self.starts, scale, seed, point.structure)
-        size = size_from_rest(decider.plain, point, self.settings)
-        gap = self.width * (size.gap or point.length)
-        return starts_in_both_boxes(self.starts, gap, size, seed, point)
+            scale = self.scale[value_index] if isinstance(self.scale, tuple) else self.scale
+            return draw_starts_around_rest(self.starts, scale, seed, point.structure)
+        from_rest = run_from_rest(decider.plain, point, self.settings)
+        scale = self.width * (from_rest.max_gap or point.length)
+        return draw_starts_around_rest_and_response(self.starts, scale, from_rest, seed, point)
 
-    def gather_attractors(
+    def group_starts_into_attractors(
         self, instances: tuple[Instance, EventInstance | None], table: Table
     ) -> Table:
-        points, order = self.series.points, self.order()
+        """Return the attractors, with columns (1, values, attractors), of the settled starts."""
+        points, order = self.series.points, self.sorting_indices()
         starts = {n: np.split(rows, len(points)) for n, rows in table.items()}
         settled = [{name: rows[i] for name, rows in starts.items()} for i in order]
         ordered = [points[i] for i in order]
-        matched = continue_attractors(instances, ordered, settled, self.settings)
+        matched = match_attractors(instances, ordered, settled, self.settings)
         columns = attractor_columns(matched)
         return {name: rows[np.newaxis, np.argsort(order)] for name, rows in columns.items()}
 
-    def order(self) -> NDArray[np.intp]:
+    def sorting_indices(self) -> NDArray[np.intp]:
         """Return the indices that sort the parameter values, so that neighbours are adjacent."""
         return np.argsort(self.series.values, kind="stable")
 
@@ -132,11 +136,9 @@ class AttractorsJob(SeriesQuestion):
         variables = {
             "number": variable(along, there.sum(axis=1), "1", "attractors found"),
             **attractor_variables({name: table[name][0] for name in COLUMNS}, (along,), "starts"),
-            **self.existence_ranges(there),
+            **self.existence_range_variables(there),
             "attractor_of": variable((along, "start"), table["labels"][0], "1", text),
-            "features": variable(
-                (along, "start", "feature"), rows, "1", f"what responses have settled to{ABOUT}"
-            ),
+            "features": variable((along, "start", "feature"), rows, "1", SETTLED_TO),
         }
         coordinates = {
             **self.series.coordinates(),
@@ -148,7 +150,7 @@ class AttractorsJob(SeriesQuestion):
         title = f"Coexisting attractors along {along}: {self.structure.label()}"
         return make_dataset(variables, coordinates, title)
 
-    def existence_ranges(self, there: NDArray[np.bool_]) -> dict[str, Variable]:
+    def existence_range_variables(self, there: NDArray[np.bool_]) -> dict[str, Variable]:
         values = np.array(self.series.values)[:, np.newaxis]
         first = np.where(there, values, np.inf).min(axis=0)
         last = np.where(there, values, -np.inf).max(axis=0)
@@ -164,10 +166,10 @@ SettledRow = tuple[Sequence[float], NDArray[np.float64], int, int]  # features, 
 ABSENT_ROW: SettledRow = ([np.nan] * len(FEATURES), np.full(4, np.nan), ABSENT, 0)  # they overlap
 
 
-def settled_rows(decider: MotionDecider, starts: ArrayLike) -> list[SettledRow]:
+def settle_starts(decider: MotionDecider, starts: ArrayLike) -> list[SettledRow]:
     """Run starts until they settle; return of each features, a state at phase 0, how and when."""
-    settled = decider.decide_all(starts)
-    return [(motion.features, state, motion.decided, when) for motion, state, when in settled]
+    reached = decider.decide_all(starts)
+    return [(motion.features, state, motion.decided, when) for motion, state, when in reached]
 
 
 def settled_table(rows: Sequence[SettledRow]) -> Table:
@@ -184,10 +186,10 @@ def attractor_columns(matched: MatchedAttractors) -> Table:
     states = np.full((*shape, 4), np.nan)
     for i, motions in enumerate(matched.motions):
         for number, motion in zip(matched.numbers[i], motions, strict=True):
-            own = *motion.features[:3], motion.multiplier
-            for name, feature in zip((*OF_ATTRACTORS, "multiplier"), own, strict=True):
+            features = *motion.features[:3], motion.multiplier
+            for name, feature in zip((*OF_ATTRACTORS, "multiplier"), features, strict=True):
                 columns[name][i, number] = feature
-            how[i, number], states[i, number] = motion.decided, motion.state
+            how[i, number], states[i, number] = motion.decided, motion.state_of_least_x1
             if len(matched.labels[i]):
                 share[i, number] = np.mean(matched.labels[i] == number)
     labels = np.array(matched.labels)
@@ -195,12 +197,12 @@ def attractor_columns(matched: MatchedAttractors) -> Table:
 
 
 def attractor_variables(
-    columns: Mapping[str, Any], along: tuple[str, ...], of: str
+    columns: Mapping[str, Any], along: tuple[str, ...], share_of: str
 ) -> dict[str, Variable]:
     dims = (*along, "attractor")
     text = "a state at phase 0, of a periodic one the least x1: x1, x2 in m, v1, v2 in m/s"
     return {
-        "share": variable(dims, columns["share"], "1", f"share of the {of}"),
+        "share": variable(dims, columns["share"], "1", f"share of the {share_of}"),
         **{name: variable(dims, columns[name], "1", OF_ATTRACTORS[name]) for name in OF_ATTRACTORS},
         "multiplier": variable(dims, columns["multiplier"], "1", MULTIPLIER),
         "decided_by": flags(dims, columns["how"], DECIDED_BY, WORDS),
@@ -208,7 +210,7 @@ def attractor_variables(
     }
 
 
-def random_starts(
+def draw_starts_around_rest(
     count: int, scale: float, seed: tuple[int, int], structure: Structure
 ) -> NDArray[np.float64]:
     """Draw ``count`` states, shape (count, 4), uniformly from a box around rest, gap >= 0."""
@@ -217,31 +219,31 @@ def random_starts(
         raise InputError(f"starts in +-{scale:g} m: {expected}")
     draws = np.random.default_rng(list(seed)).uniform(-scale, scale, (count, 4))
     omega, x1, gap = structure.omega, draws[:, 0] + structure.at_rest[0], np.abs(draws[:, 1])
-    v1, rate = draws[:, 2] * omega, draws[:, 3] * omega
-    return starts_by_gap(structure, x1, gap, v1, rate)
+    v1, gap_rate = draws[:, 2] * omega, draws[:, 3] * omega
+    return starts_from_gap(structure, x1, gap, v1, gap_rate)
 
 
-def starts_by_gap(
-    structure: Structure, x1: Floats, gap: Floats, v1: Floats, rate: Floats
+def starts_from_gap(
+    structure: Structure, x1: Floats, gap: Floats, v1: Floats, gap_rate: Floats
 ) -> Floats:
     """Return start states by mass 1 and the gap: inside the stroke, and with mass 2 at a wall."""
     if structure.stroke:
         gap = np.mod(gap, structure.stroke)
     if structure.wall:
-        x1, v1, rate = structure.gap_offset - gap, v1, -v1
+        x1, gap_rate = structure.gap_offset - gap, -v1
     x2 = x1 + gap - structure.gap_offset
-    return np.column_stack([x1, 0.0 * x2 if structure.wall else x2, v1, v1 + rate])
+    return np.column_stack([x1, 0.0 * x2 if structure.wall else x2, v1, v1 + gap_rate])
 
 
-class SizeFromRest(NamedTuple):
-    """Size of the settled response from rest: its state, largest displacement, largest gap."""
+class ResponseFromRest(NamedTuple):
+    """The settled response from rest: a state, its largest displacement and largest gap."""
 
     state: NDArray[np.float64]  # at phase 0, x1, x2 in m, v1, v2 in m/s
-    displacement: float  # largest displacement of both masses, m
-    gap: float  # largest gap, m
+    max_displacement: float  # of both masses, m
+    max_gap: float  # m
 
 
-def size_from_rest(instance: Instance, point: Point, settings: SettlingRun) -> SizeFromRest:
+def run_from_rest(instance: Instance, point: Point, settings: SettlingSettings) -> ResponseFromRest:
     """Run from rest until settled; return a state there, largest displacement and gap, m."""
     (settled,) = run_until_settled(instance, point, REST, settings)
     assert isinstance(settled, SettledResponse), "no motion is known"
@@ -250,22 +252,22 @@ def size_from_rest(instance: Instance, point: Point, settings: SettlingRun) -> S
     span = 8 * point.excitation.period
     states = sampled(instance, 0.0, span, 512)
     displacement = float(np.abs(states[:, :2]).max())
-    return SizeFromRest(np.array(response.end), displacement, response.x_rel_max)
+    return ResponseFromRest(np.array(response.end), displacement, response.x_rel_max)
 
 
-def starts_in_both_boxes(
-    count: int, scale: float, size: SizeFromRest, seed: tuple[int, int], point: Point
+def draw_starts_around_rest_and_response(
+    count: int, scale: float, from_rest: ResponseFromRest, seed: tuple[int, int], point: Point
 ) -> NDArray[np.float64]:
     """Draw start states in turn from a box around rest and one around the response from rest."""
-    states = random_starts(count, scale, seed, point.structure)
+    states = draw_starts_around_rest(count, scale, seed, point.structure)
     draws = np.random.default_rng([*seed, 1]).uniform(-1.0, 1.0, (count, 4))
     frequency = point.excitation.frequency
     # of the largest displacement, and of the largest gap, of the response from rest
-    around, gap = 0.7 * size.displacement, 3.0 * (size.gap or point.length)
-    x1 = size.state[0] + around * draws[:, 0]
-    v1 = size.state[2] + frequency * around * draws[:, 2]
-    own = x1, gap * np.abs(draws[:, 1]), v1, frequency * gap * draws[:, 3]
-    states[1::2] = starts_by_gap(point.structure, *own)[1::2]
+    around, gap = 0.7 * from_rest.max_displacement, 3.0 * (from_rest.max_gap or point.length)
+    x1 = from_rest.state[0] + around * draws[:, 0]
+    v1 = from_rest.state[2] + frequency * around * draws[:, 2]
+    gaps, gap_rates = gap * np.abs(draws[:, 1]), frequency * gap * draws[:, 3]
+    states[1::2] = starts_from_gap(point.structure, x1, gaps, v1, gap_rates)[1::2]
     return states
 
 
@@ -283,7 +285,7 @@ def attractors(
     values: ArrayLike | None = None,
     starts: Annotated[int | None, whole(1)] = None,
     seed: Annotated[int, whole(0, 2**32 - 1)] = 0,
-    scale: Annotated[ArrayLike | None, half_widths] = None,
+    scale: Annotated[ArrayLike | None, checked_half_widths] = None,
     width: Positive = 3.0,
     transient: int = 400,
     settle: float = 300.0,
@@ -320,7 +322,7 @@ def attractors(
         Periods kept: more where attractors repeat after more than half as many.
     settings : AttractorSettings, optional
         Thresholds of the rule that decides: those of
-        :class:`orchestrate.dynamics.clusters.AttractorSettings` by default.
+        :class:`orchestrate.dynamics.settling.AttractorSettings` by default.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
 
@@ -371,12 +373,12 @@ def attractors(
     """
     if starts is None:
         along = {"eta": eta, "frequency": frequency, "amplitude": amplitude, "values": values}
-        given = (checked_numbers(*each) for each in along.items())
-        several = any(isinstance(one, tuple) and len(one) > 1 for one in given)
+        series = (checked_numbers(*each) for each in along.items())
+        several = any(isinstance(each, tuple) and len(each) > 1 for each in series)
         starts = 60 if several else 600
     return as_given(
         starts=starts,
-        settings=SettlingRun.from_settings(
+        settings=SettlingSettings.from_settings(
             settings, transient=transient, settle=settle, samples=samples
         ),
     )

@@ -18,7 +18,10 @@ Floats = NDArray[np.float64]
 
 
 def box_entropies(labels: Labels, size: int) -> Floats:
-    """Return ``-sum p ln p`` over the attractors' shares p in square boxes of ``size`` starts."""
+    """Return ``-sum p ln p`` over the attractors' shares p, of each box of ``size`` x ``size``.
+
+    Boxes with a start of overlapping masses (label -1) are left out.
+    """
     rows, columns = (side // size for side in labels.shape)
     boxes = labels[: rows * size, : columns * size]
     boxes = boxes.reshape(rows, size, columns, size).swapaxes(1, 2).reshape(rows * columns, -1)
@@ -28,7 +31,7 @@ def box_entropies(labels: Labels, size: int) -> Floats:
     return np.asarray(terms.sum(axis=0))
 
 
-def uncertainty_exponent(sizes: Floats, fractions: Floats) -> tuple[float, float]:
+def fit_uncertainty_exponent(sizes: Floats, fractions: Floats) -> tuple[float, float]:
     """Fit alpha of ``fraction ~ size**alpha`` in logs; return it and its error, or NaN."""
     from scipy.stats import linregress
 
@@ -85,18 +88,18 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
         kind = type(basins).__name__
         raise InputError(f"basins: {kind} is no answer of basin; expected one")
     labels = np.asarray(known.values, dtype=np.int64)
-    if min(labels.shape) < LEAST_BOXES * size:
+    max_size = min(labels.shape) // LEAST_BOXES
+    if size > max_size:
         raise InputError(
             f"box = {size}: of a plane of {labels.shape[1]} x {labels.shape[0]} starts; expected "
-            f"at most {min(labels.shape) // LEAST_BOXES}"
+            f"at most {max_size}"
         )
     entropies = box_entropies(labels, size)
     if not entropies.size:
         raise InputError(f"box = {size}: the masses overlap in each box; expected a smaller one")
-    longest = min(labels.shape) // LEAST_BOXES
-    sizes = 2 ** np.arange(1, longest.bit_length())
+    sizes = 2 ** np.arange(1, max_size.bit_length())
     fractions = np.array([np.mean(box_entropies(labels, each) > 0.0) for each in sizes])
-    exponent, error = uncertainty_exponent(sizes - 1.0, fractions)  # sides from start to start
+    exponent, error = fit_uncertainty_exponent(sizes - 1.0, fractions)  # sides from start to start
     texts = {
         "basin_entropy": (float(entropies.mean()), "mean entropy of boxes of starts"),
         "boundary_basin_entropy": (

@@ -30,12 +30,12 @@ from .attractors import (
     attractor_columns,
     attractor_variables,
     attractors,
-    settled_rows,
+    settle_starts,
     settled_table,
 )
-from .clusters import RUN_LENGTHS, AttractorSettings, SettlingRun
 from .decision import MotionDecider
-from .global_continuation import continue_attractors, instance_pair
+from .global_continuation import match_attractors, open_instance_pair
+from .settling import RUN_LENGTHS, AttractorSettings, SettlingSettings
 
 Floats = NDArray[np.float64]
 AXES = {  # coordinates of a plane of starts: units, long name
@@ -71,39 +71,39 @@ class Plane(NamedTuple):
     y: PlaneAxis
     at: tuple[float, ...]  # state in whose neighbourhood the plane lies: x1, x2 in m, v1, v2 in m/s
 
-    def starts(self) -> tuple[Floats, Floats]:
-        """Return states of all starts, shape (y.number * x.number, 4), and phases, row by row."""
+    def states_and_phases(self) -> tuple[Floats, Floats]:
+        """Return all starts row by row: states, shape (y.number * x.number, 4), and phases."""
         y, x = np.meshgrid(self.y.values(), self.x.values(), indexing="ij")
-        given = {self.x.name: x.ravel(), self.y.name: y.ravel()}
+        on_axes = {self.x.name: x.ravel(), self.y.name: y.ravel()}
         structure, at = self.point.structure, self.at
         if not any(at):
             at = (*structure.at_rest, 0.0, 0.0)
         columns = dict(zip(STATE, np.array(at)[:, None] + np.zeros(x.size), strict=True))
-        phase = given.get("phase", np.full(x.size, self.point.excitation.phase))
+        phase = on_axes.get("phase", np.full(x.size, self.point.excitation.phase))
         if structure.wall:
             columns |= {"x2": np.zeros(x.size), "v2": np.zeros(x.size)}
-        if "x_rel" in given:  # from here on, as the difference x2 - x1
-            given["x_rel"] = given["x_rel"] - structure.gap_offset
-        columns |= {name: values for name, values in given.items() if name in STATE}
-        for name, (one, two) in GAPS.items():
-            if name in given:
-                fixed = {two: columns[two]} if structure.wall else {}
-                columns[one], columns[two] = masses_from_gap(
-                    {**given, **fixed}, name, columns[one], columns[two]
+        if "x_rel" in on_axes:  # from here on, as the difference x2 - x1
+            on_axes["x_rel"] = on_axes["x_rel"] - structure.gap_offset
+        columns |= {name: values for name, values in on_axes.items() if name in STATE}
+        for name, (first, second) in GAPS.items():
+            if name in on_axes:
+                fixed = {second: columns[second]} if structure.wall else {}
+                columns[first], columns[second] = mass_coordinates_from_gap(
+                    {**on_axes, **fixed}, name, columns[first], columns[second]
                 )
         return np.column_stack([columns[name] for name in STATE]), phase
 
 
-def masses_from_gap(
-    coordinates: Mapping[str, Floats], name: str, value1: Floats, value2: Floats
+def mass_coordinates_from_gap(
+    known: Mapping[str, Floats], gap_name: str, value1: Floats, value2: Floats
 ) -> tuple[Floats, Floats]:
     """Return both masses' coordinates from a gap, keeping one mass's value or their mean."""
-    first, second = GAPS[name]
-    if first in coordinates:
-        return value1, value1 + coordinates[name]
-    if second in coordinates:
-        return value2 - coordinates[name], value2
-    middle, half = 0.5 * (value1 + value2), 0.5 * coordinates[name]
+    first, second = GAPS[gap_name]
+    if first in known:
+        return value1, value1 + known[gap_name]
+    if second in known:
+        return value2 - known[gap_name], value2
+    middle, half = 0.5 * (value1 + value2), 0.5 * known[gap_name]
     return middle - half, middle + half
 
 
@@ -114,7 +114,7 @@ class BasinJob(questions.Question):
     x: PlaneAxis
     y: PlaneAxis
     known: tuple[tuple[float, ...], ...]  # states on attractors that are known, at phase 0
-    settings: SettlingRun
+    settings: SettlingSettings
     replaced: ClassVar[tuple[str, ...]] = (*questions.OF_EXCITATION, *PUSHES, "phase", *RUN_LENGTHS)
     family: ClassVar[tuple[str, ...]] = FAMILY
     chunk_size: ClassVar[int] = 240
@@ -124,7 +124,7 @@ class BasinJob(questions.Question):
     def __post_init__(self) -> None:
         super().__post_init__()
         questions.require_delaminated(self.structure)
-        states = self.plane().starts()[0]
+        states = self.plane().states_and_phases()[0]
         if self.structure.wall and states[:, 1::2].any():
             raise InputError(
                 "x and y: mass 2 is a wall; expected of x1 and x_rel, v1 and v_rel one"
@@ -141,7 +141,7 @@ class BasinJob(questions.Question):
         return self.x.number * self.y.number + 1
 
     def items(self) -> Sequence[tuple[questions.State, float] | None]:
-        states, phases = self.plane().starts()
+        states, phases = self.plane().states_and_phases()
         return [*zip(map(tuple, states.tolist()), phases.tolist(), strict=True), None]
 
     def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
@@ -149,24 +149,25 @@ class BasinJob(questions.Question):
         point = questions.Point(
             self.structure, self.excitation.replace(phase=0.0)
         )  # a start has its own
-        with instance_pair(fmus[OSCILLATOR]) as instances:
+        with open_instance_pair(fmus[OSCILLATOR]) as instances:
             if previous is not None:
-                return self.gather_attractors(instances, point, previous)
+                return self.group_starts_into_attractors(instances, point, previous)
             decider = MotionDecider(*instances, point, self.settings)
             rows = [ABSENT_ROW] * len(items)
             states = np.array([state for state, _ in items])
-            apart = np.flatnonzero(~questions.outside_gap(states, self.structure))
-            starts = [run_to_phase_zero(decider.plain, point, *items[i]) for i in apart.tolist()]
-            for i, row in zip(apart.tolist(), settled_rows(decider, starts), strict=True):
+            possible = np.flatnonzero(~questions.outside_gap(states, self.structure)).tolist()
+            starts = [run_to_phase_zero(decider.plain, point, *items[i]) for i in possible]
+            for i, row in zip(possible, settle_starts(decider, starts), strict=True):
                 rows[i] = row
             return settled_table(rows)
 
-    def gather_attractors(
+    def group_starts_into_attractors(
         self, instances: tuple[Instance, EventInstance | None], point: questions.Point, table: Table
     ) -> Table:
+        """Return the attractors, with columns (1, attractors), and the label of each start."""
         there = table["decided"] != ABSENT
         starts = {name: rows[there] for name, rows in table.items()}
-        matched = continue_attractors(instances, [point], [starts], self.settings, self.known)
+        matched = match_attractors(instances, [point], [starts], self.settings, self.known)
         columns = attractor_columns(matched)
         labels = np.full((1, len(there)), -1, dtype=np.int16)
         labels[0, there] = columns["labels"][0]
@@ -294,14 +295,16 @@ def basin(
     """
     pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
     point = questions.checked_point(structure, eta, frequency, amplitude, **pushes)
-    run = SettlingRun.from_settings(settings, transient=transient, settle=settle, samples=samples)
+    run = SettlingSettings.from_settings(
+        settings, transient=transient, settle=settle, samples=samples
+    )
     known: KnownAttractors | None = None
     if x is None or y is None:
-        known = find_known_attractors(point, run, running)
+        known = find_attractors_from_few_starts(point, run, running)
         if x is None and y is None and at is None:
             at = known.samples.mean(axis=0)
     if hasattr(at, "data_vars"):
-        at = mean_over_attractors(at, point.excitation.frequency)  # type: ignore[arg-type]
+        at = mean_attractor_state(at, point.excitation.frequency)  # type: ignore[arg-type]
     sides = (
         known.default_axis("x_rel") if x is None and known else checked_axis("x", x),
         known.default_axis("v_rel") if y is None and known else checked_axis("y", y),
@@ -318,19 +321,20 @@ def basin(
     )
 
 
-def mean_over_attractors(found: xr.Dataset, frequency: float) -> Floats:
-    over = [name for name in found.get("state", xr.DataArray()).dims if name != "coordinate"]
+def mean_attractor_state(result: xr.Dataset, frequency: float) -> Floats:
+    """Return the mean of the states of a result of ``attractors``, which is at ``frequency``."""
+    over = [name for name in result.get("state", xr.DataArray()).dims if name != "coordinate"]
     if "attractor" not in over or any(
-        found.sizes[name] > 1 for name in over if name != "attractor"
+        result.sizes[name] > 1 for name in over if name != "attractor"
     ):
         raise InputError(
-            f"at: {describe_dataset(found)}; expected a result of attractors at one frequency"
+            f"at: {describe_dataset(result)}; expected a result of attractors at one frequency"
         )
-    there = float(np.ravel(found.frequency)[0])
-    if not math.isclose(there, frequency, rel_tol=1e-6):
+    frequency_there = float(np.ravel(result.frequency)[0])
+    if not math.isclose(frequency_there, frequency, rel_tol=1e-6):
         text = f"expected those at frequency = {frequency:.6g} rad/s"
-        raise InputError(f"at: attractors at {there:.6g} rad/s; {text}")
-    return np.nanmean(found.state.values.reshape(-1, len(STATE)), axis=0)
+        raise InputError(f"at: attractors at {frequency_there:.6g} rad/s; {text}")
+    return np.nanmean(result.state.values.reshape(-1, len(STATE)), axis=0)
 
 
 class KnownAttractors(NamedTuple):
@@ -349,8 +353,8 @@ class KnownAttractors(NamedTuple):
         return PlaneAxis(name, 0.0 if name == "x_rel" else -high, high, COUNT)
 
 
-def find_known_attractors(
-    point: questions.Point, settings: SettlingRun, running: Mapping[str, Any]
+def find_attractors_from_few_starts(
+    point: questions.Point, settings: SettlingSettings, running: Mapping[str, Any]
 ) -> KnownAttractors:
     structure, excitation = point
     search: Any = {name: getattr(settings, name) for name in RUN_LENGTHS} | {"settings": settings}

@@ -29,12 +29,12 @@ from ..fmu import STATE, EventInstance, Instance, begin, stroboscopic_samples
 from ..model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from ..response.questions import Point
 from ..response.respond import Response, respond
-from .clusters import ReachedMotion, SettlingRun, run_until_settled
 from .continuation import SOLVER_ERRORS
 from .families import Setting, acting
 from .orbit_search import Guess, guess_from_impacts, least_periods, solve_orbit, why_no_motion
 from .periodic_orbit import ImpactSequence, PeriodicOrbit
 from .settled_motion import Floats, SettledMotion
+from .settling import ReachedMotion, SettledResponse, SettlingSettings, run_until_settled
 from .turning_points import rotate_to_phase_zero
 
 PIECES = 64  # of a period, among which a stretch without impacts is sought
@@ -46,7 +46,11 @@ class MotionDecider:
     """Decides to which motions responses at one point settle; remembers the orbits found."""
 
     def __init__(
-        self, plain: Instance, eventful: EventInstance | None, point: Point, settings: SettlingRun
+        self,
+        plain: Instance,
+        eventful: EventInstance | None,
+        point: Point,
+        settings: SettlingSettings,
     ) -> None:
         self.plain, self.eventful, self.point, self.settings = plain, eventful, point, settings
         excitation = point.excitation
@@ -57,92 +61,91 @@ class MotionDecider:
 
     # -- responses --------------------------------------------------------------------------------
 
-    def decide(self, state: ArrayLike) -> tuple[SettledMotion, Floats]:
-        """Run from a state at phase 0 until its motion is known; return it and a state on it."""
-        return self.decide_all(np.asarray(state)[np.newaxis])[0][:2]
+    def decide(self, state: ArrayLike) -> ReachedMotion:
+        """Run from a state at phase 0 until its motion is known; return what it has reached."""
+        return self.decide_all(np.asarray(state)[np.newaxis])[0]
 
-    def decide_all(self, states: ArrayLike) -> list[tuple[SettledMotion, Floats, int]]:
-        """Run from states at phase 0, as :meth:`decide` from one; and until when they repeat."""
-        starts, decided = np.asarray(states), list[tuple[SettledMotion, Floats, int]]()
-        while len(decided) < len(starts):  # each time as many as before: these know the orbits
-            some = starts[len(decided) : 2 * len(decided) + 1]
+    def decide_all(self, states: ArrayLike) -> list[ReachedMotion]:
+        """Run from states at phase 0, as :meth:`decide` from one."""
+        starts, reached = np.asarray(states), list[ReachedMotion]()
+        while len(reached) < len(starts):  # each time as many as before: these know the orbits
+            batch = starts[len(reached) : 2 * len(reached) + 1]
             orbits = [motion for motion in self.known if motion.decided == ORBIT]
-            settled = run_until_settled(self.plain, self.point, some, self.settings, orbits)
-            decided += [
-                each if isinstance(each, ReachedMotion) else (*self.motion_of(*each), each.periods)
+            settled = run_until_settled(self.plain, self.point, batch, self.settings, orbits)
+            reached += [
+                each if isinstance(each, ReachedMotion) else self.decide_response(each)
                 for each in settled
             ]
-        return decided
+        return reached
 
-    def motion_of(self, response: Response, done: int) -> tuple[SettledMotion, Floats]:
-        unstable = False
+    def decide_response(self, settled: SettledResponse) -> ReachedMotion:
+        """Decide the motion of a settled response; run it on where no stable orbit is found."""
+        response, done = settled
+        settings, near_unstable = self.settings, False
         while True:
-            motion, doubtful = self.periodic_motion(response)
+            motion, unstable = self.find_periodic_motion(response)
             if motion is not None:
-                return motion, motion.states[motion.nearest(response.end)[0]]
-            unstable |= doubtful
-            dropped = min(done, self.settings.longest - done)
+                state = motion.states[motion.nearest_state(response.end)[0]]
+                return ReachedMotion(motion, state, settled.periods)
+            near_unstable |= unstable
+            dropped = min(done, settings.longest - done)
             if dropped <= 0:
-                return self.motion_without_orbit(response, unstable)
-            response = self.run_on(response, dropped)
-            done += dropped + self.settings.samples
+                motion = self.motion_without_orbit(response, near_unstable)
+                return ReachedMotion(motion, np.array(response.end), settled.periods)
+            lengths = dropped, settings.samples
+            response = respond(self.plain, *self.point, response.end, *lengths, settings.converged)
+            done += sum(lengths)
 
-    def run_on(self, response: Response, dropped: int) -> Response:
-        samples, converged = self.settings.samples, self.settings.converged
-        return respond(self.plain, *self.point, response.end, dropped, samples, converged)
-
-    def periodic_motion(self, response: Response) -> tuple[SettledMotion | None, bool]:
-        """Return a response's periodic motion (or None), and whether an unstable orbit is near."""
+    def find_periodic_motion(self, response: Response) -> tuple[SettledMotion | None, bool]:
+        """Return a response's known motion or stable orbit, or None and whether one is unstable."""
         n = response.multiplicity
         known = self.known_motion_at(response.end, n) if n else None
         if known is not None:
             return known, False
         unstable = False
-        for periods in [n] if n else self.possible_periods(response):
-            orbit, free_phase = self.orbit_near(response.end, periods)
-            motion = self.stable_motion(orbit, free_phase)
+        for periods in [n] if n else self.find_periods_at_other_phase(response):
+            orbit, free_phase = self.solve_orbit_near(response.end, periods)
+            motion = self.motion_if_stable(orbit, free_phase)
             unstable |= orbit is not None and motion is None
             comes = motion is not None and self.converges_to(response.end, motion, periods)
             if motion and comes and self.repeats_in_fmu(motion):
-                return self.remember(motion), False
+                return self.find_or_add(motion), False
         return None, unstable
 
-    def possible_periods(self, response: Response) -> list[int]:
+    def find_periods_at_other_phase(self, response: Response) -> list[int]:
         """Simulate on, sampled at another phase; return periods after which it may repeat there."""
         begin(self.plain, *self.point, response.end)
         self.plain.step(0.0, OTHER_PHASE / self.point.excitation.frequency)
-        there = self.plain.get(*STATE)
+        state = self.plain.get(*STATE)
         shifted = self.point.excitation.replace(phase=OTHER_PHASE)
-        begin(self.plain, self.point.structure, shifted, there)
+        begin(self.plain, self.point.structure, shifted, state)
         states, gap = stroboscopic_samples(
             self.plain, self.point.excitation.period, 0, self.settings.irregular_samples
         )
-        seen = replace(response, samples=states, x_rel_max=gap)
+        sampled = replace(response, samples=states, x_rel_max=gap)
         close, nearly = self.settings.converged, self.settings.apart * self.settings.converged
-        counts = [seen.repetition(tolerance).multiplicity for tolerance in (close, nearly)]
+        counts = [sampled.repetition(tolerance).multiplicity for tolerance in (close, nearly)]
         return [n for n in dict.fromkeys(counts) if n]
 
-    def motion_without_orbit(
-        self, response: Response, unstable: bool
-    ) -> tuple[SettledMotion, Floats]:
-        """Return a motion for a response without stable orbit, irregular or periodic; a state."""
-        n, state = response.multiplicity, np.array(response.end)
+    def motion_without_orbit(self, response: Response, near_unstable: bool) -> SettledMotion:
+        """Return a new motion for a response without stable orbit; a periodic one is known now."""
+        n = response.multiplicity
         if not n or response.repetition(self.settings.converged).multiplicity != n:  # nearly is not
             states, impacts = response.samples, response.impacts_per_period
-            motion = SettledMotion(self.point, IRREGULAR, states, 0, impacts, response.x_rel_max)
-            return motion, state
+            return SettledMotion(self.point, IRREGULAR, states, 0, impacts, response.x_rel_max)
         states = response.samples[-n:].copy()
-        impacts = count_impacts_from_pause(self.plain, self.point, response.end, n) / n
-        decided = UNDECIDED if unstable or response.lacks_impacts(impacts, n) else REPEATED
+        impacts = count_impacts_starting_in_pause(self.plain, self.point, response.end, n) / n
+        decided = UNDECIDED if near_unstable or response.lacks_impacts(impacts, n) else REPEATED
         motion = SettledMotion(self.point, decided, states, n, impacts, response.x_rel_max)
         self.known.append(motion)
-        return motion, state
+        return motion
 
     # -- known motions ----------------------------------------------------------------------------
 
     def known_motion_at(self, state: ArrayLike, n: int) -> SettledMotion | None:
+        """Return the known motion of ``n`` periods that a state lies on, or converges to."""
         for motion in self.known:
-            distance = motion.nearest(state)[1]
+            distance = motion.nearest_state(state)[1]
             within = self.settings.same if motion.decided == ORBIT else self.settings.alike
             if distance < within and motion.multiplicity == n:
                 return motion
@@ -151,21 +154,25 @@ class MotionDecider:
                 return motion
         return None
 
-    def remember(self, motion: SettledMotion) -> SettledMotion:
+    def find_or_add(self, motion: SettledMotion) -> SettledMotion:
+        """Return the known motion with the same orbit, or this one, known from now on."""
         for known in self.known:
             if known.is_same_orbit_as(motion, self.settings.same):
                 return known
         self.known.append(motion)
         return motion
 
-    def stable_motion(self, orbit: PeriodicOrbit | None, free_phase: float) -> SettledMotion | None:
+    def motion_if_stable(
+        self, orbit: PeriodicOrbit | None, free_phase: float
+    ) -> SettledMotion | None:
         if orbit is None or not orbit.stable:
             return None
         return SettledMotion.from_orbit(self.point, orbit, free_phase)
 
-    def stable_orbit_at(self, state: ArrayLike, periods: int) -> SettledMotion | None:
-        motion = self.stable_motion(*self.orbit_near(state, periods))
-        return self.remember(motion) if motion and self.repeats_in_fmu(motion) else None
+    def find_stable_motion_near(self, state: ArrayLike, periods: int) -> SettledMotion | None:
+        """Solve for a stable orbit from a state; if the FMU has it, its motion is known now."""
+        motion = self.motion_if_stable(*self.solve_orbit_near(state, periods))
+        return self.find_or_add(motion) if motion and self.repeats_in_fmu(motion) else None
 
     def converges_to(self, state: ArrayLike, motion: SettledMotion, n: int) -> bool:
         """Return whether the response from a state, of ``n`` periods so far, comes to an orbit."""
@@ -173,8 +180,8 @@ class MotionDecider:
         begin(self.plain, *self.point, state)
         if motion.free_phase > 0.0:
             self.plain.step(0.0, motion.free_phase / excitation.frequency)
-        there = self.plain.get(*STATE)
-        place, before = motion.nearest_free(there)
+        state = self.plain.get(*STATE)
+        first, before = motion.nearest_state_at_free_phase(state)
         if before < self.settings.same or not before < self.settings.near:
             return before < self.settings.same
         rate = max(motion.multiplier, 1e-3)
@@ -183,20 +190,24 @@ class MotionDecider:
         whole = n // math.gcd(n, periods)  # what repeats after n periods is as near again after it
         turns = math.ceil(turns / whole) * whole
         shifted = excitation.replace(phase=motion.free_phase % TURN)
-        begin(self.plain, self.point.structure, shifted, there)
+        begin(self.plain, self.point.structure, shifted, state)
         self.plain.step(0.0, turns * periods * excitation.period)
-        last, after = motion.nearest_free(self.plain.get(*STATE))
-        return last == place and after <= max(0.5 * (1.0 + rate**turns) * before, ROUNDING)
+        last, after = motion.nearest_state_at_free_phase(self.plain.get(*STATE))
+        return last == first and after <= max(0.5 * (1.0 + rate**turns) * before, ROUNDING)
 
     # -- orbits -----------------------------------------------------------------------------------
 
-    def orbit_near(self, state: ArrayLike, periods: int) -> tuple[PeriodicOrbit | None, float]:
+    def solve_orbit_near(
+        self, state: ArrayLike, periods: int
+    ) -> tuple[PeriodicOrbit | None, float]:
+        """Solve for an orbit from a state's impacts; return it, or None, and its free phase."""
         if self.eventful is None:
             return None, 0.0
-        guess, free_phase = self.guess_from(np.array(state), periods)
-        return self.solve(guess), free_phase
+        guess, free_phase = self.guess_and_free_phase(np.array(state), periods)
+        return self.solve_possible_orbit(guess), free_phase
 
-    def solve(self, guess: Guess) -> PeriodicOrbit | None:
+    def solve_possible_orbit(self, guess: Guess) -> PeriodicOrbit | None:
+        """Return the orbit, of least period, that Newton's method finds, if a motion can be it."""
         if len(guess[0].kinds) > self.settings.max_nodes:
             return None
         try:
@@ -206,10 +217,10 @@ class MotionDecider:
         orbit = family.orbit(root.unknowns)
         if root.residual > self.settings.residual or why_no_motion(orbit):
             return None
-        return without_copies(orbit)
+        return reduce_to_least_period(orbit)
 
-    def guess_from(self, state: Floats, periods: int) -> tuple[Guess, float]:
-        """Run the FMU some periods; return its impacts as guess of an orbit, and its phase."""
+    def guess_and_free_phase(self, state: Floats, periods: int) -> tuple[Guess, float]:
+        """Run the FMU from a state; return its impacts as a guess, from an impact-free phase on."""
         instance, frequency = self.eventful, self.point.excitation.frequency
         assert instance is not None
         form, span = self.system.form(self.values), periods * self.point.excitation.period
@@ -230,28 +241,30 @@ class MotionDecider:
         """Continue an orbit of a neighbouring value to this one; None if not stable here."""
         if motion.orbit is None or self.eventful is None:
             return None
-        orbit = self.solve((motion.orbit.sequence, motion.orbit.nodes))
-        continued = self.stable_motion(orbit, phase_far_from_impacts(orbit) if orbit else 0.0)
-        if continued is None or not self.stays_on(continued):
+        orbit = self.solve_possible_orbit((motion.orbit.sequence, motion.orbit.nodes))
+        continued = self.motion_if_stable(orbit, phase_far_from_impacts(orbit) if orbit else 0.0)
+        if continued is None or not self.fmu_stays_on(continued):
             return None
         state = continued.states[0]
-        own = self.stable_orbit_at(state, continued.multiplicity)  # with the impacts of the FMU
-        return own if own is not None and own.nearest(state)[1] < self.settings.same else None
+        # with the impacts of the FMU
+        own = self.find_stable_motion_near(state, continued.multiplicity)
+        return own if own is not None and own.nearest_state(state)[1] < self.settings.same else None
 
-    def stays_on(self, motion: SettledMotion) -> bool:
+    def fmu_stays_on(self, motion: SettledMotion) -> bool:
+        """Return whether the FMU, started at the orbit's free phase, is there again a round on."""
         excitation = self.point.excitation
         shifted = excitation.replace(phase=motion.free_phase % TURN)
         try:
-            begin(self.plain, self.point.structure, shifted, motion.free_states[0])
+            begin(self.plain, self.point.structure, shifted, motion.states_at_free_phase[0])
         except (FmuError, InputError):  # in contact the masses overlap within rounding
             return False
         self.plain.step(0.0, motion.multiplicity * excitation.period)
-        return motion.nearest_free(self.plain.get(*STATE))[1] < self.settings.same
+        return motion.nearest_state_at_free_phase(self.plain.get(*STATE))[1] < self.settings.same
 
     def repeats_in_fmu(self, motion: SettledMotion) -> bool:
         """Return whether the FMU, started on an orbit, has its impacts and comes back to it."""
         # by `gamma` chattering may have an impact more or less: a root that is no motion of the FMU
-        instance, orbit, nearest = self.eventful, motion.orbit, motion.nearest_free
+        instance, orbit, nearest = self.eventful, motion.orbit, motion.nearest_state_at_free_phase
         assert instance is not None and orbit is not None, "no orbit"
         begun = motion.free_phase / self.point.excitation.frequency
         end = begun + motion.multiplicity * self.point.excitation.period
@@ -267,7 +280,7 @@ class MotionDecider:
         return impacts == orbit.sequence.impacts and last == first and away < self.settings.returns
 
 
-def without_copies(orbit: PeriodicOrbit) -> PeriodicOrbit:
+def reduce_to_least_period(orbit: PeriodicOrbit) -> PeriodicOrbit:
     """Return an orbit reduced to its least period, if it repeats within its period."""
     periods, least = orbit.sequence.periods, least_periods(orbit)
     if least == periods:
@@ -287,9 +300,10 @@ def phase_far_from_impacts(orbit: PeriodicOrbit) -> float:
     return float(middle % (TURN * orbit.sequence.periods))
 
 
-def count_impacts_from_pause(
+def count_impacts_starting_in_pause(
     instance: Instance, point: Point, state: ArrayLike, periods: int
 ) -> int:
+    """Count a response's impacts over some periods, from its longest time without impacts on."""
     begin(instance, *point, state)
     width = point.excitation.period / PIECES
     counts: list[int] = []
@@ -299,10 +313,10 @@ def count_impacts_from_pause(
     each = np.diff([0, *counts])
     middle = middle_of_longest_run(each == 0)
     begin(instance, *point, state)
-    begun = (middle + 0.5) * width
-    instance.step(0.0, begun)
+    first = (middle + 0.5) * width
+    instance.step(0.0, first)
     (before,) = instance.get("impact_count")
-    instance.step(begun, begun + periods * PIECES * width)
+    instance.step(first, first + periods * PIECES * width)
     (after,) = instance.get("impact_count")
     return int(after - before)
 

@@ -31,9 +31,9 @@ from ..response.signatures import as_given, question
 from ..response.sweep import HOW_DECIDED
 from ..running.job import FAMILY, Chunk, Fmus, Table, to_json_data
 from ..running.options import RunOptions
-from .clusters import transient_periods
 from .impacts_after_transient import follow_impacts
 from .lyapunov import SAYS, WORDS, classify_exponents, exponent_of, wander_floor
+from .settling import transient_periods
 
 FIELDS = {
     "impacts_per_period": "impacts per excitation period",

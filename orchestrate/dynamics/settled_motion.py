@@ -55,14 +55,14 @@ class SettledMotion:
         )
 
     @property
-    def state(self) -> Floats:
+    def state_of_least_x1(self) -> Floats:
         """Return the state at phase 0 with the smallest x1, of equal ones x2, v1, v2."""
         return np.array(min(self.states.tolist()))
 
     @property
-    def rank(self) -> tuple[float, ...]:
+    def sort_key(self) -> tuple[float, ...]:
         """Return what attractors are numbered by: periodic first, periods, impacts, gap, state."""
-        return (self.multiplicity == 0, *self.features[:3], *self.state)
+        return (self.multiplicity == 0, *self.features[:3], *self.state_of_least_x1)
 
     @cached_property
     def features(self) -> list[float]:
@@ -72,16 +72,18 @@ class SettledMotion:
         gap = self.gap / self.point.length
         return [self.multiplicity, self.impacts_per_period, gap, *means]
 
-    def nearest(self, state: ArrayLike) -> tuple[int, float]:
+    def nearest_state(self, state: ArrayLike) -> tuple[int, float]:
         """Return the period whose state at phase 0 is nearest to a state, and its distance."""
         return nearest_state(self.states, self.point.excitation.frequency, self.gap, state)
 
-    def nearest_free(self, state: ArrayLike) -> tuple[int, float]:
+    def nearest_state_at_free_phase(self, state: ArrayLike) -> tuple[int, float]:
         """Return the same at the orbit's impact-free phase."""
-        return nearest_state(self.free_states, self.point.excitation.frequency, self.gap, state)
+        return nearest_state(
+            self.states_at_free_phase, self.point.excitation.frequency, self.gap, state
+        )
 
     @cached_property
-    def free_states(self) -> Floats:
+    def states_at_free_phase(self) -> Floats:
         assert self.orbit is not None, "no orbit"
         return self.point.from_faces(stroboscopic_states(self.orbit, self.free_phase))
 
@@ -89,10 +91,13 @@ class SettledMotion:
         """Return whether both motions are the same orbit: same nodes, or states that are close."""
         if self.orbit is None or other.orbit is None or self.multiplicity != other.multiplicity:
             return False
-        return same_nodes(self.orbit, other.orbit) or self.nearest(other.states[0])[1] < within
+        return (
+            have_same_nodes(self.orbit, other.orbit)
+            or self.nearest_state(other.states[0])[1] < within
+        )
 
 
-def same_nodes(first: PeriodicOrbit, second: PeriodicOrbit) -> bool:
+def have_same_nodes(first: PeriodicOrbit, second: PeriodicOrbit) -> bool:
     """Return whether two orbits have the same nodes, up to a shift by whole periods."""
     kinds, second_kinds = np.array(first.sequence.kinds), np.array(second.sequence.kinds)
     if len(kinds) != len(second_kinds):

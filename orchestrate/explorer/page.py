@@ -13,8 +13,8 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from ..dynamics.clusters import AttractorSettings
 from ..dynamics.lyapunov import BATCHES, BLOCKS, SIGMAS, WANDER
+from ..dynamics.settling import AttractorSettings
 from ..errors import InputError
 from ..files import make_writable_folder, write_atomically
 from ..fmu.channel import StepAnswer

@@ -11,8 +11,8 @@ import xarray as xr
 
 import orchestrate
 
-from ..dynamics.clusters import AttractorSettings
 from ..dynamics.lyapunov import CHAOTIC, NEUTRAL
+from ..dynamics.settling import AttractorSettings
 from ..dynamics.stable_windows import StableWindow, stable_windows
 from ..model import Drive, Structure
 from ..model.outcomes import REPEATED

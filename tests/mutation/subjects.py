@@ -30,8 +30,11 @@ SUBJECTS = {
         f"tests/orchestrate/dynamics/test_{name}.py" for name in ("decision", "global_continuation")
     ),
     "orchestrate/dynamics/clusters.py": tuple(
+        f"tests/orchestrate/dynamics/test_{name}.py" for name in ("clusters", "global_continuation")
+    ),
+    "orchestrate/dynamics/settling.py": tuple(
         f"tests/orchestrate/dynamics/test_{name}.py"
-        for name in ("clusters", "decision", "global_continuation")
+        for name in ("settling", "decision", "global_continuation")
     ),
     "orchestrate/dynamics/curve_growth.py": ("tests/orchestrate/dynamics/test_manifolds.py",),
     "orchestrate/laboratory/analysis/knocks.py": ("tests/orchestrate/laboratory/test_hammer.py",),

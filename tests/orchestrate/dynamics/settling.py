@@ -2,6 +2,6 @@
 
 from functools import partial
 
-from orchestrate.dynamics.clusters import SettlingRun
+from orchestrate.dynamics.settling import SettlingSettings
 
-settling_run = partial(SettlingRun, transient=400, settle=300.0, samples=48)
+settling_run = partial(SettlingSettings, transient=400, settle=300.0, samples=48)

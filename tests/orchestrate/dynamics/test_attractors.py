@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrate.dynamics.attractors import AttractorsJob, attractors
-from orchestrate.dynamics.clusters import AttractorSettings, transient_periods
+from orchestrate.dynamics.settling import AttractorSettings, transient_periods
 from orchestrate.model import Structure
 from orchestrate.model.outcomes import IRREGULAR, ORBIT, UNDECIDED
 from orchestrate.response.sweep import sweep

@@ -22,7 +22,7 @@ SIDES = {"x": ("x_rel", -0.4, 1.2, 5), "y": ("v_rel", -1.0, 1.0, 4)}
 
 
 def starts(x, y, at=AT):
-    states, phases = Plane(POINT, PlaneAxis(*x), PlaneAxis(*y), at).starts()
+    states, phases = Plane(POINT, PlaneAxis(*x), PlaneAxis(*y), at).states_and_phases()
     return states.reshape(y[3], x[3], 4), phases.reshape(y[3], x[3])
 
 

@@ -10,13 +10,13 @@ from orchestrate import orbit
 from orchestrate.constants import TURN
 from orchestrate.dynamics import decision
 from orchestrate.dynamics.attractors import attractors
-from orchestrate.dynamics.clusters import ReachedMotion, run_until_settled
 from orchestrate.dynamics.decision import (
     MotionDecider,
-    count_impacts_from_pause,
+    count_impacts_starting_in_pause,
     middle_of_longest_run,
     phase_far_from_impacts,
 )
+from orchestrate.dynamics.settling import ReachedMotion, run_until_settled
 from orchestrate.fmu import OSCILLATOR, REST, EventInstance, Instance, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
@@ -69,7 +69,7 @@ def test_impacts_are_counted_from_a_pause(monkeypatch):
         get=lambda name: [np.count_nonzero(times <= now[0])],
     )
     monkeypatch.setattr(decision, "begin", lambda *asked: None)
-    assert count_impacts_from_pause(instance, point, REST, 1) == 1
+    assert count_impacts_starting_in_pause(instance, point, REST, 1) == 1
 
 
 def test_starts_that_come_to_a_known_orbit_are_not_run_on():
@@ -83,7 +83,10 @@ def test_starts_that_come_to_a_known_orbit_are_not_run_on():
         again = run_until_settled(plain, decider.point, starts, USUAL, decider.known)
     assert len({motion.multiplicity for motion in alone}) == 2
     for one, (motion, state, _) in zip(alone, together, strict=True):
-        assert motion.multiplicity == one.multiplicity and motion.nearest(one.state)[1] < 1e-9
+        assert (
+            motion.multiplicity == one.multiplicity
+            and motion.nearest_state(one.state_of_least_x1)[1] < 1e-9
+        )
         assert (motion.states == state).all(axis=1).any()
     assert all(isinstance(each, ReachedMotion) for each in again)
     assert [each.motion for each in again] == [motion for motion, *_ in together]
@@ -105,10 +108,10 @@ class Scripted(MotionDecider):
 
     def motion(self, distance=0.0, decided=ORBIT, multiplicity=1, multiplier=0.5):
         return SimpleNamespace(
-            nearest=lambda state: (0, distance),
-            nearest_free=lambda state: (next(self.places), next(self.path)),
+            nearest_state=lambda state: (0, distance),
+            nearest_state_at_free_phase=lambda state: (next(self.places), next(self.path)),
             decided=decided, multiplicity=multiplicity, multiplier=multiplier, free_phase=0.0,
-            free_states=[None],
+            states_at_free_phase=[None],
         )  # fmt: skip
 
     def converges_to(self, state, motion, n):
@@ -197,10 +200,13 @@ def test_starts_are_compared_with_known_orbits_alone(monkeypatch):
 def test_a_response_has_an_orbit_that_it_comes_to_and_the_fmu_repeats(comes, repeats):
     decider = Scripted(comes)
     motion = decider.motion()
-    decider.orbit_near, decider.stable_motion = lambda *asked: (motion, 0.0), lambda *orbit: motion
-    decider.repeats_in_fmu, decider.remember = lambda motion: repeats, lambda motion: motion
+    decider.solve_orbit_near, decider.motion_if_stable = (
+        lambda *asked: (motion, 0.0),
+        lambda *orbit: motion,
+    )
+    decider.repeats_in_fmu, decider.find_or_add = lambda motion: repeats, lambda motion: motion
     response = SimpleNamespace(multiplicity=1, end=REST)
-    assert decider.periodic_motion(response) == (motion if comes and repeats else None, False)
+    assert decider.find_periodic_motion(response) == (motion if comes and repeats else None, False)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -228,7 +234,7 @@ def test_an_impact_at_the_sampled_phase_does_not_matter():
 def test_each_threshold_of_a_run_that_stays_on_an_orbit(monkeypatch, away, stays):
     monkeypatch.setattr(decision, "begin", lambda *asked: None)
     decider = Scripted(path=(away,))
-    assert decider.stays_on(decider.motion()) == stays
+    assert decider.fmu_stays_on(decider.motion()) == stays
 
 
 @pytest.mark.parametrize(
@@ -243,7 +249,7 @@ def test_an_orbit_is_one_to_which_the_fmu_returns(monkeypatch, away, impacts, pe
     decider.eventful = SimpleNamespace(impacts=lambda begin, end: found, read=lambda *names: None)
     motion, ends = decider.motion(), iter([(0, 1.0), (period, away)])
     motion.orbit = SimpleNamespace(sequence=SimpleNamespace(impacts=1))
-    motion.states, motion.nearest_free = [REST], lambda state: next(ends)
+    motion.states, motion.nearest_state_at_free_phase = [REST], lambda state: next(ends)
     assert decider.repeats_in_fmu(motion) == repeats
 
 
@@ -268,10 +274,10 @@ def test_an_orbit_goes_on_at_a_neighbour_if_it_is_stable_and_the_fmu_has_it(chan
     decider, own = Scripted(), given["own"] and Scripted().motion(given["own"])
     motion = decider.motion()
     motion.states, motion.orbit, decider.eventful = [REST], given["orbit"], given["eventful"]
-    decider.solve = lambda guess: None
-    decider.stable_motion = lambda *orbit: motion if given["stable"] else None
-    decider.stays_on = lambda motion: given["stays"]
-    decider.stable_orbit_at = lambda *asked: own
+    decider.solve_possible_orbit = lambda guess: None
+    decider.motion_if_stable = lambda *orbit: motion if given["stable"] else None
+    decider.fmu_stays_on = lambda motion: given["stays"]
+    decider.find_stable_motion_near = lambda *asked: own
     assert decider.continue_orbit(motion) is (own if continued else None)
 
 
@@ -287,7 +293,7 @@ def test_a_guess_begins_in_the_middle_of_the_longest_pause(monkeypatch, times, b
     decider.eventful = SimpleNamespace(impacts=lambda *span: spans.append(span) or found)
     monkeypatch.setattr(decision, "begin", lambda *asked: None)
     monkeypatch.setattr(decision, "guess_from_impacts", lambda *given: given[0])
-    guess, phase = decider.guess_from(np.array(REST), 1)
+    guess, phase = decider.guess_and_free_phase(np.array(REST), 1)
     assert phase == pytest.approx(TURN / 6.0 * begun)
     assert times or (guess[0].periods, guess[0].kinds, guess[1].shape) == (1, (), (0, 4))
     ends = [(0.0, 6.0), (0.0, begun), (begun, 6.0 + begun)]
@@ -303,9 +309,9 @@ def test_each_threshold_of_newtons_method(monkeypatch, nodes, residual, found):
     root = SimpleNamespace(unknowns=None, residual=residual)
     monkeypatch.setattr(decision, "solve_orbit", lambda *asked: (family, root))
     monkeypatch.setattr(decision, "why_no_motion", lambda orbit: "")
-    monkeypatch.setattr(decision, "without_copies", lambda orbit: orbit)
+    monkeypatch.setattr(decision, "reduce_to_least_period", lambda orbit: orbit)
     guess = SimpleNamespace(kinds=range(nodes)), None
-    assert (Scripted().solve(guess) is not None) == found
+    assert (Scripted().solve_possible_orbit(guess) is not None) == found
 
 
 def decided_from(structure, eta, start=REST, settings=USUAL, form="fmi3"):
@@ -313,7 +319,7 @@ def decided_from(structure, eta, start=REST, settings=USUAL, form="fmi3"):
     with Instance(path) as plain, EventInstance(find(OSCILLATOR).path) as eventful:
         events = eventful if form == "fmi3" else None
         decider = MotionDecider(plain, events, point_of(structure, eta), settings)
-        return decider.decide(start)
+        return decider.decide(start)[:2]
 
 
 def told(data):
@@ -359,7 +365,7 @@ def test_impacts_are_whole_numbers_from_whatever_period_one_counts():
     assert motion.multiplicity in (2, 11)
     with Instance(find(OSCILLATOR).path) as instance:
         counts = {
-            count_impacts_from_pause(instance, motion.point, state, motion.multiplicity)
+            count_impacts_starting_in_pause(instance, motion.point, state, motion.multiplicity)
             for state in motion.states
         }
     assert counts == {round(motion.impacts_per_period * motion.multiplicity)}

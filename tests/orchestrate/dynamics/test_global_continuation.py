@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from orchestrate.dynamics.attractors import attractors
-from orchestrate.dynamics.clusters import AttractorSettings
-from orchestrate.dynamics.global_continuation import BY_NEWTON, BY_SIMULATION, match_neighbours
+from orchestrate.dynamics.global_continuation import BY_NEWTON, BY_SIMULATION, matching_pairs
 from orchestrate.dynamics.settled_motion import SettledMotion
+from orchestrate.dynamics.settling import AttractorSettings
 from orchestrate.model import Excitation, Structure
 from orchestrate.model.outcomes import ORBIT
 from orchestrate.response.questions import Point
@@ -48,8 +48,8 @@ def test_shares_count_random_starts_alone(line):
 def test_motions_are_numbered_by_what_they_are():
     rows = [(1, 2.0, 3.0), (2, 1.0, 3.0), (2, 1.5, 1.0), (2, 1.5, 2.0), (0, 0.5, 0.5)]
     ordered = [SettledMotion(POINT, ORBIT, np.eye(4), *row) for row in rows]
-    assert sorted(ordered[2:] + ordered[:2], key=lambda motion: motion.rank) == ordered
-    assert ordered[0].state.tolist() == [0.0, 0.0, 0.0, 1.0]
+    assert sorted(ordered[2:] + ordered[:2], key=lambda motion: motion.sort_key) == ordered
+    assert ordered[0].state_of_least_x1.tolist() == [0.0, 0.0, 0.0, 1.0]
 
 
 def value(*motions, apart=0.0):
@@ -63,7 +63,7 @@ def motion(n, impacts, apart):
         impacts_per_period=impacts,
         point=POINT,
         states=states,
-        nearest=lambda state: (0, apart),
+        nearest_state=lambda state: (0, apart),
     )
 
 
@@ -84,7 +84,7 @@ def test_which_attractors_of_neighbours_are_one(before, after, forth, back, expe
     for i, leads in ((0, forth), (1, back)):
         for k, to in enumerate(leads):
             links[i, k, 1 - i] = to if isinstance(to, tuple) else (to, BY_SIMULATION)
-    found = match_neighbours(value(*before), value(*after), 0, links, 0.0)
+    found = matching_pairs(value(*before), value(*after), 0, links, 0.0)
     assert sorted(found) == expected
 
 
@@ -94,4 +94,4 @@ def test_neighbours_that_one_leads_to_are_one_if_they_are_near(apart, expected):
     links = {key: (to, BY_SIMULATION) for key, to in leads.items()}
     near = value(T, T, apart=apart)
     distance = AttractorSettings().neighbour
-    assert sorted(match_neighbours(near, near, 0, links, distance)) == expected
+    assert sorted(matching_pairs(near, near, 0, links, distance)) == expected
