@@ -380,14 +380,14 @@ structure and excitation are those of that branch."""
         if question["bifurcation"] != "all":
             self.compute_print_and_write(structure, question)
             return
-        from ..dynamics.borders import lies_on_curve
+        from ..dynamics.borders import passes_bifurcation
 
         if self.store is not None:
             raise InputError("--store: of one bifurcation; expected it without --bifurcation all")
         curves: list[xr.Dataset] = []
         for number in range(question["start"].sizes.get("bifurcation", 0)):
             one = {**question, "bifurcation": number}
-            if any(lies_on_curve(curve, one) for curve in curves):
+            if any(passes_bifurcation(curve, one) for curve in curves):
                 print(f"number {number} is on a curve that was followed")
                 continue
             try:

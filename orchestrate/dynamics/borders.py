@@ -23,9 +23,9 @@ from . import branches
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcation_kinds import KINDS, Kind
 from .closed_form import Floats
-from .codimension_two import POINT_KINDS, locate_points
+from .codimension_two import POINT_KINDS, locate_codimension_two_points
 from .continuation import SOLVER_ERRORS, Root, newton_correct, unit_vector
-from .families import Family, Setting, check_parameters
+from .families import Family, Setting, require_known_parameters
 from .orbit_records import (
     branch_dataset,
     located_table,
@@ -35,11 +35,11 @@ from .orbit_records import (
     split_located,
 )
 from .orbit_tracer import OrbitPoint
-from .orbits import FirstGuess, call_from_start, excitation_arguments
+from .orbits import FirstGuess, call_text_from_start, excitation_arguments
 from .tracer import ContinuationSettings
 
 POINT = "codimension_two"
-LEFT = "what is left of both conditions, of the multipliers' polynomial over its largest part"
+RESIDUAL = "what is left of both conditions, of the multipliers' polynomial over its largest part"
 KEPT = (
     "state",
     "xi",
@@ -64,20 +64,20 @@ class BorderJob(Question):
         keywords = {"over": self.setting.over, "limits": self.setting.limits}
         more = {"longest": self.longest, "most": self.most}
         values, kind = np.array(self.values), KINDS[self.kind]
-        return call_from_start(self, values, bifurcation=kind, **keywords, **more)
+        return call_text_from_start(self, values, bifurcation=kind, **keywords, **more)
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
-        curve, root = start_root(self)
+        curve, root = solve_start_on_curve(self)
         settings = ContinuationSettings(self.longest, self.most)
         back, forth = (
             BifurcationTracer(curve, start, settings).trace(start)
             for start in (root.reversed(), root)
         )
         roots = [*reversed(back.points[1:]), *forth.points]
-        points = locate_points(curve, roots, (back.end, forth.end))
+        points = locate_codimension_two_points(curve, roots, (back.end, forth.end))
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            rows = [row_at(instance, curve, root.unknowns, root.residual) for root in roots]
-            at = [row_at(instance, curve, each.unknowns, each.residual) for each in points]
+            rows = [orbit_row_at(instance, curve, root.unknowns, root.residual) for root in roots]
+            at = [orbit_row_at(instance, curve, each.unknowns, each.residual) for each in points]
         angles = [root.unknowns[-1] if self.kind == Kind.TORUS else np.nan for root in roots]
         ends = np.array([back.end, forth.end])
         more = {"angle": np.array(angles), "ends": ends}
@@ -95,11 +95,12 @@ class BorderJob(Question):
         kinds, names = ("what happens as well", POINT_KINDS), {name: name for name in setting.over}
         data |= located_variables(setting, located, POINT, kinds, names, KEPT)
         if "residual" in located:
-            data[f"{POINT}_residual"] = variable(POINT, located["residual"], "1", LEFT)
+            data[f"{POINT}_residual"] = variable(POINT, located["residual"], "1", RESIDUAL)
         return branch_dataset(setting, along, data, attributes)
 
 
-def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
+def solve_start_on_curve(job: BorderJob) -> tuple[BifurcationCurve, Root]:
+    """Solve for the job's orbit and bifurcation at its start; return the curve and the root."""
     # both at once: at a fold the orbit at a fixed parameter is no simple root
     (sequence, nodes), values = job.start.as_guess(job.period), np.array(job.values)
     family = Family.from_nodes(job.setting, sequence, nodes)
@@ -108,19 +109,19 @@ def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
         point = OrbitPoint(family, Root(orbit, np.zeros_like(orbit), np.inf, 0))
         curve = BifurcationCurve.from_orbit(family, point, job.kind)
         guess = np.append(orbit, curve.extra)
-        curve.update_border(guess)
-        second = unit_vector(len(guess), curve.first_parameter + 1)
+        curve.update_bordering_vectors(guess)
+        second = unit_vector(len(guess), curve.first_parameter_index + 1)
         return curve, newton_correct(curve, guess, second)
     except SOLVER_ERRORS as reason:
         expected = "expected a branch of this structure"
         raise InputError(f"start: no bifurcation found there ({reason}); {expected}") from None
 
 
-def row_at(
+def orbit_row_at(
     instance: EventInstance, curve: BifurcationCurve, unknowns: Floats, residual: float
 ) -> Table:
     """Return the row of the orbit at a curve's unknowns, checked by a run in the FMU."""
-    return orbit_row(instance, curve.family, unknowns[: curve.family.size + 2], residual)
+    return orbit_row(instance, curve.family, unknowns[: curve.family.node_unknowns + 2], residual)
 
 
 @question(BorderJob)
@@ -196,41 +197,42 @@ def border(
     ('Neimark-Sacker', array([0.69, 0.71]))
     """
     require_delaminated(structure)
-    branches.require_orbit_dataset(start, several=True)
+    branches.require_orbit_dataset(start, allow_several=True)
     branches.checked_bifurcation_index(start, "bifurcation", bifurcation)
     names = checked_texts("over", over)
-    check_parameters(names)
+    require_known_parameters(names)
     if len(set(names)) != 2 or len(names) != 2 or names[0] != start.attrs.get("over"):
         raise InputError(
             f"over = {names!r}: expected two different names, the first one that of start, "
             f"{start.attrs.get('over')!r}"
         )
     pairs = checked_limit_pairs(names, limits)
-    nodes, kind = branches.start_nodes(start, "bifurcation", bifurcation)
+    nodes, kind = branches.start_guess_and_kind(start, "bifurcation", bifurcation)
     value = float(start["bifurcation_value"].values[bifurcation])
     excitation = excitation_arguments(eta, frequency, amplitude)
     pushes = branches.pushes_at_start(
         start, box_acceleration=box_acceleration, force1=force1, force2=force2
     )
     first = start.isel(point=0)
-    given = branches.complete_excitation(first, names, excitation, pairs[0], structure, pushes)
-    second = second_start_value(structure, names[1], given)
+    excitation = branches.complete_excitation(first, names, excitation, pairs[0], structure, pushes)
+    second = start_value_of_second_parameter(structure, names[1], excitation)
     for name, number, pair in zip(names, (value, second), pairs, strict=True):
         branches.require_inside_limits(name, number, pair)
-    setting = branches.varied_setting(structure, given, names, pairs)
-    own = {"setting": setting, "start": nodes, "period": start.sizes["sample"], "kind": kind}
-    return as_given(f"_{'_'.join(names)}", values=(value, second), **own)
+    setting = branches.varied_setting(structure, excitation, names, pairs)
+    fields = {"setting": setting, "start": nodes, "period": start.sizes["sample"], "kind": kind}
+    return as_given(f"_{'_'.join(names)}", values=(value, second), **fields)
 
 
-def lies_on_curve(curve: xr.Dataset, question: Mapping[str, Any], near: float = 1e-3) -> bool:
-    """Return whether a border passes another start's bifurcation of its kind."""
+def passes_bifurcation(curve: xr.Dataset, question: Mapping[str, Any], near: float = 1e-3) -> bool:
+    """Return whether a border passes the bifurcation that another question starts from."""
     start, (across, along) = question["start"], question["over"]
-    found = start.isel(bifurcation=question["bifurcation"])
+    bifurcation = start.isel(bifurcation=question["bifurcation"])
     level = Structure.from_attributes(start.attrs).parameters().get(along, np.nan)
-    x, y = curve[across].values - float(found.bifurcation_value), curve[along].values - level
+    x = curve[across].values - float(bifurcation.bifurcation_value)
+    y = curve[along].values - level
     at = np.flatnonzero((y[:-1] * y[1:] <= 0.0) & (y[:-1] != y[1:]))
     passes = x[at] - y[at] * (x[at + 1] - x[at]) / (y[at + 1] - y[at])
-    kind = flag_word(found.bifurcation_kind)
+    kind = flag_word(bifurcation.bifurcation_kind)
     reach = near * np.ptp(question["limits"][0])
     return bool(curve.attrs["kind"] == kind and (np.abs(passes) < reach).any())
 
@@ -243,12 +245,12 @@ def checked_limit_pairs(names: tuple[str, ...], limits: Any) -> tuple[tuple[floa
         raise InputError(f"limits = {limits!r}: {expected}") from None
 
 
-def second_start_value(
-    structure: Structure, name: str, arguments: tuple[tuple[str, float], ...]
+def start_value_of_second_parameter(
+    structure: Structure, name: str, excitation: tuple[tuple[str, float], ...]
 ) -> float:
-    if name in EXCITATION_PARAMETERS and name not in dict(arguments):
-        box = (pair for pair in arguments if pair[0] in EXCITATION_PARAMETERS)
-        forms = "; ".join(f"{given} = {value!r}" for given, value in box)
+    if name in EXCITATION_PARAMETERS and name not in dict(excitation):
+        box = (pair for pair in excitation if pair[0] in EXCITATION_PARAMETERS)
+        forms = "; ".join(f"{stated} = {value!r}" for stated, value in box)
         expected = "only eta" if name == "eta" else "frequency and amplitude in place of eta"
         raise InputError(f"over = {name!r} with {forms}: expected {expected}")
-    return dict(arguments)[name] if name in dict(arguments) else structure.get(name)
+    return dict(excitation)[name] if name in dict(excitation) else structure.get(name)

@@ -8,7 +8,13 @@ from ..constants import TURN
 from ..errors import InputError
 from .bifurcation_kinds import KINDS, Kind
 from .closed_form import Floats
-from .continuation import ArclengthStepper, Root, fix_sign, newton_correct, unit_vector
+from .continuation import (
+    ArclengthStepper,
+    Root,
+    newton_correct,
+    unit_vector,
+    with_positive_leading_component,
+)
 from .families import Family
 from .orbit_tracer import OrbitPoint
 from .periodic_orbit import CLOSING, PHASE, ImpactSequence
@@ -17,7 +23,8 @@ from .turning_points import nearest_miss, turning_points
 AWAY = 1e-3  # along the new branch, in unknowns over their scale: where its gap is tested
 
 
-def leaving_branch(kind: int, point: OrbitPoint) -> OrbitPoint:
+def first_point_of_leaving_branch(kind: int, point: OrbitPoint) -> OrbitPoint:
+    """Return the orbit at a bifurcation as a point of the branch that leaves there."""
     if kind == Kind.FLIP:
         return double_period(point)
     if kind == Kind.TOUCHING:
@@ -33,13 +40,13 @@ def leaving_branch(kind: int, point: OrbitPoint) -> OrbitPoint:
 def double_period(point: OrbitPoint) -> OrbitPoint:
     """Return the orbit repeated twice, with the tangent of the period-doubled branch."""
     family, orbit = point.family, point.orbit
-    singular = orbit.jacobian(-1.0).real * family.scale[: family.size]
-    mode = fix_sign(np.linalg.svd(singular)[2][-1])
+    singular = orbit.jacobian(-1.0).real * family.scale[: family.node_unknowns]
+    mode = with_positive_leading_component(np.linalg.svd(singular)[2][-1])
     second = orbit.nodes.copy()
     second[:, PHASE] += TURN * family.sequence.periods
     nodes = np.vstack([orbit.nodes, second])
-    sizes = np.tile(family.scale[: family.size], 2) * np.sqrt(2.0)
-    scale = np.append(sizes, family.scale[family.size :])
+    sizes = np.tile(family.scale[: family.node_unknowns], 2) * np.sqrt(2.0)
+    scale = np.append(sizes, family.scale[family.node_unknowns :])
     twice = Family(family.setting, family.sequence.doubled(), scale)
     tangent = np.concatenate([mode, -mode, np.zeros(len(family.setting.over))])
     unknowns = np.append(nodes.ravel(), point.values)
@@ -54,12 +61,12 @@ def with_touching_impact(point: OrbitPoint) -> OrbitPoint:
     state = orbit.states(np.array([segment]), np.array([phase]))[0]
     outer = bool(2.0 * (state[1] - state[0]) > orbit.form.limit)
     row = [phase, state[0], float(state[2:] @ orbit.form.shares), 0.0]
-    node = segment + 1 if orbit.count else 0
+    node = segment + 1 if orbit.node_count else 0
     sequence = orbit.sequence.with_impact(node, outer)
     nodes = np.insert(orbit.nodes, node, row, axis=0)
-    begin = solve_same_motion(point, sequence, nodes)
-    rising = begin.root.tangent[4 * node + CLOSING] > 0.0
-    return begin if rising else begin.reversed()
+    first = solve_with_sequence(point, sequence, nodes)
+    rising = first.root.tangent[4 * node + CLOSING] > 0.0
+    return first if rising else first.reversed()
 
 
 def without_grazing_impact(point: OrbitPoint) -> OrbitPoint:
@@ -68,13 +75,14 @@ def without_grazing_impact(point: OrbitPoint) -> OrbitPoint:
     closing = np.where(orbit.sequence.releases, np.inf, orbit.nodes[:, CLOSING])
     node = int(np.abs(closing).argmin())
     nodes = np.delete(orbit.nodes, node, axis=0)
-    begin = solve_same_motion(point, orbit.sequence.without(node), nodes)
-    ahead = ArclengthStepper(begin.family, begin.root, AWAY, AWAY).root_after(AWAY)
-    return begin if OrbitPoint(begin.family, ahead).nearest_miss > 0.0 else begin.reversed()
+    first = solve_with_sequence(point, orbit.sequence.without(node), nodes)
+    ahead = ArclengthStepper(first.family, first.root, AWAY, AWAY).root_after(AWAY)
+    return first if OrbitPoint(first.family, ahead).nearest_miss > 0.0 else first.reversed()
 
 
-def solve_same_motion(point: OrbitPoint, sequence: ImpactSequence, nodes: Floats) -> OrbitPoint:
+def solve_with_sequence(point: OrbitPoint, sequence: ImpactSequence, nodes: Floats) -> OrbitPoint:
+    """Solve for an orbit with another sequence of impacts at a point's parameters."""
     family = Family.from_nodes(point.family.setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), point.values)
-    normal = unit_vector(len(unknowns), family.size)
+    normal = unit_vector(len(unknowns), family.node_unknowns)
     return OrbitPoint(family, newton_correct(family, unknowns, normal))

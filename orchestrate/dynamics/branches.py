@@ -23,9 +23,9 @@ from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
 from ..running.provenance import describe_dataset
 from .bifurcation_kinds import KINDS
-from .branch_switching import leaving_branch
+from .branch_switching import first_point_of_leaving_branch
 from .continuation import SOLVER_ERRORS
-from .families import Setting, check_parameters
+from .families import Setting, require_known_parameters
 from .orbit_records import (
     branch_dataset,
     located_table,
@@ -39,7 +39,7 @@ from .orbit_tracer import OrbitPoint, OrbitTracer
 from .orbits import (
     NODE,
     FirstGuess,
-    call_from_start,
+    call_text_from_start,
     excitation_arguments,
     guess_from_result,
     orbit,
@@ -72,7 +72,7 @@ class BranchJob(Question):
         switch = {"switch": KINDS[self.switch]} if self.switch >= 0 else {}
         keywords = {**switch, "over": over, "limits": limits}
         more = {"longest": self.longest, "most": self.most}
-        return call_from_start(self, np.array([self.value]), **keywords, **more)
+        return call_text_from_start(self, np.array([self.value]), **keywords, **more)
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         guess = self.start.as_guess(self.period)
@@ -80,7 +80,9 @@ class BranchJob(Question):
         try:
             start = OrbitPoint(*solve_orbit(self.setting, guess, np.array([self.value])))
             both = [start.reversed(), start]
-            starts = both if self.switch < 0 else [leaving_branch(self.switch, start)]
+            starts = (
+                both if self.switch < 0 else [first_point_of_leaving_branch(self.switch, start)]
+            )
         except SOLVER_ERRORS as reason:
             expected = "expected an orbit of this structure"
             raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
@@ -110,6 +112,7 @@ class BranchJob(Question):
 def join_segments(
     segments: list[OrbitSegment],
 ) -> tuple[list[OrbitPoint], list[Bifurcation[OrbitPoint]]]:
+    """Join a backward and a forward segment, or take one, to points and bifurcations in order."""
     forth = segments[-1]
     if len(segments) == 1:
         return forth.points, forth.bifurcations
@@ -198,42 +201,43 @@ def branch(
     >>> found.bifurcation_value.values.round(8)
     array([2.64796105, 2.7855415 ])
     """
-    check_parameters((over,))
+    require_known_parameters((over,))
     require_delaminated(structure)
     if start is not None:
-        require_orbit_dataset(start, several=switch is not None)
+        require_orbit_dataset(start, allow_several=switch is not None)
         require_same_parameter(start, over, switch)
     low_high = checked_limits(over, limits)
     pushes = pushes_at_start(start, box_acceleration=box_acceleration, force1=force1, force2=force2)
-    given = complete_excitation(
+    excitation = complete_excitation(
         start, (over,), excitation_arguments(eta, frequency, amplitude), low_high, structure, pushes
     )
     if start is None:
-        start, value = find_first_orbit(structure, over, low_high, given, period, running)
+        start, value = find_first_orbit(structure, over, low_high, excitation, period, running)
     else:
         value = start_value(start, over, switch, structure, pushes)
     require_inside_limits(over, value, low_high)
-    nodes, kind = start_nodes(start, "switch", switch)
-    setting = varied_setting(structure, given, (over,), (low_high,))
-    own = {"setting": setting, "start": nodes, "period": start.sizes["sample"], "switch": kind}
-    return as_given(f"_{over}", value=value, **own)
+    nodes, kind = start_guess_and_kind(start, "switch", switch)
+    setting = varied_setting(structure, excitation, (over,), (low_high,))
+    fields = {"setting": setting, "start": nodes, "period": start.sizes["sample"], "switch": kind}
+    return as_given(f"_{over}", value=value, **fields)
 
 
 def varied_setting(
     structure: Structure,
-    given: tuple[tuple[str, float], ...],
+    excitation: tuple[tuple[str, float], ...],
     over: tuple[str, ...],
     limits: tuple[tuple[float, float], ...],
 ) -> Setting:
-    kept = {name: number for name, number in given if name not in over}
+    """Return the setting with parameters that vary; raise where its limits are no possible ones."""
+    kept = {name: number for name, number in excitation if name not in over}
     fixed = tuple((name, number) for name, number in kept.items() if number or name not in PUSHES)
     setting = Setting(structure, fixed, over, limits)
     for corner in zip(*limits, strict=True):
-        setting.form(np.array(corner))
+        setting.closed_form(np.array(corner))
     return setting
 
 
-def require_orbit_dataset(start: Any, several: bool) -> None:
+def require_orbit_dataset(start: Any, allow_several: bool) -> None:
     if not hasattr(start, "sizes"):
         raise InputError(
             f"start = {start!r}: expected a dataset of orbit or branch; a number of the parameter "
@@ -241,7 +245,7 @@ def require_orbit_dataset(start: Any, several: bool) -> None:
         )
     if "node_kind" not in start:
         raise InputError(f"start: {describe_dataset(start)}; expected a dataset of orbit or branch")
-    if start["node_kind"].ndim != 1 and not several:
+    if start["node_kind"].ndim != 1 and not allow_several:
         raise InputError(
             "start: several orbits; expected one (in Python branch.isel(point=0)), or switch="
         )
@@ -285,25 +289,27 @@ def complete_excitation(
     structure: Structure,
     pushes: Mapping[str, float],
 ) -> tuple[tuple[str, float], ...]:
-    """Return the excitation as (name, number) pairs, taken from ``start`` where not given."""
-    acts = any(pushes.values()) or not pushes.keys().isdisjoint(varied)
+    """Return the excitation as (name, number) pairs, of ``start`` where there are no arguments."""
+    is_pushed = any(pushes.values()) or not pushes.keys().isdisjoint(varied)
     over, names = varied[0], [name for name, _ in arguments]
     if start is not None and not arguments:
         by_frequency = not {"frequency", "amplitude"}.isdisjoint(varied)
-        wanted = ("frequency", "amplitude") if by_frequency else ("eta",)
-        levels = acts or structure.has_scale or not {*OF_LENGTH, "amplitude"}.isdisjoint(varied)
+        form = ("frequency", "amplitude") if by_frequency else ("eta",)
+        has_level = (
+            is_pushed or structure.has_scale or not {*OF_LENGTH, "amplitude"}.isdisjoint(varied)
+        )
         eta, amplitude = (float(start[name].values.flat[0]) for name in ("eta", "amplitude"))
-        if levels and not math.isclose(amplitude * eta**2, 1.0, rel_tol=1e-12):
+        if has_level and not math.isclose(amplitude * eta**2, 1.0, rel_tol=1e-12):
             if "eta" in varied:
                 raise InputError(
                     f"over = 'eta': the start's amplitude is {amplitude!r} m, not 1/eta^2; "
                     "expected over='frequency' where the amplitude matters"
                 )
-            wanted = ("frequency", "amplitude")
-        asked_by_frequency = "frequency" in str(start.attrs.get("excitation", ""))
-        if "eta" in wanted and not OF_OMEGA.isdisjoint(varied) and asked_by_frequency:
-            wanted = ("frequency", "amplitude")
-        arguments = tuple((name, float(start[name].values.flat[0])) for name in wanted)
+            form = ("frequency", "amplitude")
+        started_by_frequency = "frequency" in str(start.attrs.get("excitation", ""))
+        if "eta" in form and not OF_OMEGA.isdisjoint(varied) and started_by_frequency:
+            form = ("frequency", "amplitude")
+        arguments = tuple((name, float(start[name].values.flat[0])) for name in form)
         return (*arguments, *pushes.items())
     if over in ("eta", "frequency", "amplitude") and over not in names:
         arguments = (*arguments, (over, limits[0]))
@@ -318,17 +324,18 @@ def find_first_orbit(
     period: int,
     running: Mapping[str, Any],
 ) -> tuple[xr.Dataset, float]:
+    """Compute an orbit within the limits to start from; return it, and the parameter there."""
     excitation: dict[str, Any] = dict(arguments)
     value = excitation[over] if over in excitation else limits[0]
     if over not in excitation:
-        own = structure.get(over)
-        value = own if limits[0] <= own <= limits[1] else limits[0]
+        value = structure.get(over)
+        value = value if limits[0] <= value <= limits[1] else limits[0]
         structure = structure.replace(**{over: value})
     require_inside_limits(over, value, limits)
-    return orbit_at(structure, excitation, period, running), value
+    return compute_start_orbit(structure, excitation, period, running), value
 
 
-def orbit_at(
+def compute_start_orbit(
     structure: Structure, excitation: Mapping[str, Any], period: int, running: Mapping[str, Any]
 ) -> xr.Dataset:
     kept = {name: running[name] for name in running.keys() & {"fmu", "build_folder", "progress"}}
@@ -362,17 +369,19 @@ def start_value(
     return structure.get(over)
 
 
-def checked_bifurcation_index(start: xr.Dataset, name: str, number: int) -> int:
+def checked_bifurcation_index(start: xr.Dataset, argument: str, index: int) -> int:
     count = start.sizes.get(BIFURCATION, 0)
     if not count:
-        raise InputError(f"{name} = {number!r}: start has no bifurcations; expected a branch")
-    return checked_integer(name, number, 0, count - 1)
+        raise InputError(f"{argument} = {index!r}: start has no bifurcations; expected a branch")
+    return checked_integer(argument, index, 0, count - 1)
 
 
-def start_nodes(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:
-    """Return the start orbit's nodes, and the kind of the chosen bifurcation (-1: none)."""
-    if number is None:
+def start_guess_and_kind(
+    start: xr.Dataset, argument: str, index: int | None
+) -> tuple[FirstGuess, int]:
+    """Return the nodes of the start, or of one of its bifurcations, and their kind (-1: none)."""
+    if index is None:
         return guess_from_result(start), -1
-    at = start.isel({BIFURCATION: checked_bifurcation_index(start, name, number)})
+    at = start.isel({BIFURCATION: checked_bifurcation_index(start, argument, index)})
     nodes = {name: at[f"{BIFURCATION}_{name}"].values for name in NODES}
     return guess_from_result(nodes), int(at["bifurcation_kind"])

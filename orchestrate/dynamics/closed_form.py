@@ -65,8 +65,8 @@ class ClosedForm:
         shares = np.array([0.0, 1.0] if wall else [m1, m2]) / (1.0 if wall else m1 + m2)
         share = float(shares[1])
         eta = excitation.frequency / omega
-        damping = of_both_and_common(structure.d1 / m1, structure.d2 / m2, share) / (2.0 * omega)
-        stiffness = of_both_and_common(structure.k1 / m1, structure.k2 / m2, share) / unit
+        damping = values_per_oscillator(structure.d1 / m1, structure.d2 / m2, share) / (2.0 * omega)
+        stiffness = values_per_oscillator(structure.k1 / m1, structure.k2 / m2, share) / unit
         stiffness[0] = 1.0
         if wall:
             damping[:], stiffness[:] = damping[0], 1.0
@@ -75,11 +75,11 @@ class ClosedForm:
         shaken = float(excitation.amplitude != 0.0)
         level = excitation.amplitude * excitation.frequency**2 if shaken else unit * length
         push, force1, force2 = (each / level for each in excitation.pushes)  # m/s2 that is 1 here
-        moved = 0.0 if wall else 1.0
-        drive = of_both_and_common(shaken + force1 / m1, moved * shaken + force2 / m2, share)
+        free = 0.0 if wall else 1.0
+        drive = values_per_oscillator(shaken + force1 / m1, free * shaken + force2 / m2, share)
         with np.errstate(divide="ignore", invalid="ignore"):
             cosine, sine = -loss / reach * drive, detuning / reach * drive
-        pushes = of_both_and_common(0.0 - push, moved * (0.0 - push), share)
+        pushes = values_per_oscillator(0.0 - push, free * (0.0 - push), share)
         gap_offset = structure.gap_offset / length if structure.gap_offset else 0.0
         limit = structure.stroke / length if structure.stroke else np.inf
         load = gap_offset * stiffness[1] * np.array([0.0, 1.0, share, share])
@@ -112,8 +112,8 @@ class ClosedForm:
         return INNER if gap < 0.0 else OUTER if gap > self.limit else FREE
 
     @property
-    def linear_mode(self) -> int:
-        """The mode of the response that never impacts, -1 without one."""
+    def impact_free_mode(self) -> int:
+        """The mode of the settled response if it has no impacts and no releases, else -1."""
         mode, gap = self.rest_mode, float(self.offset[1] - self.offset[0])
         if mode == FREE:
             swings = np.stack([self.cosine[:2], self.sine[:2]])
@@ -121,22 +121,22 @@ class ClosedForm:
             return FREE if swing <= room + SAME * np.abs(swings).sum() else -1
         phase = np.array([0.0, 0.5, 1.0]) * np.pi
         position, _, velocity, _ = self.steady_response(phase, mode).T
-        force = self.force(phase, position, velocity, mode == OUTER)
+        force = self.contact_force(phase, position, velocity, mode == OUTER)
         middle = 0.5 * (force[0] + force[2])
         return mode if np.hypot(*(force[:2] - middle)) <= -middle else -1
 
     @property
-    def fastest(self) -> float:
+    def highest_frequency(self) -> float:
         """The highest frequency in the motion, over omega: excitation or a natural frequency."""
         swinging = np.sqrt(np.maximum(self.stiffness - self.damping**2, 0.0))
         return float(max(self.eta, swinging.max()))
 
-    def parting(self, closing: Floats) -> Floats:
+    def separation_speed(self, closing: Floats) -> Floats:
         """Return the separation speeds e(v) v after impacts (15) by their closing speeds."""
         return self.e * closing / (1.0 + self.e_slope * closing)
 
     @cached_property
-    def numbers(self) -> Floats:
+    def kernel_numbers(self) -> Floats:
         """Return the memory of ``kernels.orbits`` up to its tables."""
         square = self.stiffness - self.damping * self.damping  # (11)
         square[np.abs(square) <= 1e-14 * self.stiffness] = 0.0  # critical but for rounding
@@ -147,63 +147,68 @@ class ClosedForm:
         motion = self.eta, self.e, self.e_slope, *self.shares, *forces
         return np.concatenate([motion, np.column_stack([*columns, *more]).ravel()])
 
-    def tabulate(self, name: str, columns: Sequence[Any], width: int, span: float = 0.0) -> Floats:
-        """Return what a function of ``kernels.orbits`` writes for rows: numbers, (n, width)."""
+    def call_kernel(
+        self, name: str, columns: Sequence[Any], width: int, span: float = 0.0
+    ) -> Floats:
+        """Call a function of ``kernels.orbits`` for n rows; return what it writes, (n, width)."""
         count, first = len(columns[0]), orbits.TABLE + len(columns) * len(columns[0])
         memory = np.empty(first + width * count + orbits.SPARE)
-        memory[: orbits.ROWS] = self.numbers
+        memory[: orbits.ROWS] = self.kernel_numbers
         memory[orbits.ROWS : orbits.TABLE] = count, span
         for i, column in enumerate(columns):
             memory[orbits.TABLE + i : first : len(columns)] = column
         getattr(loaded_loop("orbits"), name)(c_void_p(memory.ctypes.data))
         return memory[first : first + width * count].reshape(-1, width)
 
-    def flow(self, time: Floats, mode: Modes = FREE) -> Floats:
+    def flow_matrices(self, time: Floats, mode: Modes = FREE) -> Floats:
         """Return the flow matrices (n, 4, 4) of the motion in modes after given times."""
-        turned = self.tabulate("find_flows", (time, mode), 8).reshape(-1, 2, 2, 2)
+        by_mass = self.call_kernel("find_flows", (time, mode), 8).reshape(-1, 2, 2, 2)
         matrices = np.zeros((len(time), 4, 4))
-        matrices[:, ::2, ::2], matrices[:, 1::2, 1::2] = turned[:, 0], turned[:, 1]
+        matrices[:, ::2, ::2], matrices[:, 1::2, 1::2] = by_mass[:, 0], by_mass[:, 1]
         return matrices
 
     def steady_response(self, phase: Floats, mode: Modes = FREE) -> Floats:
         """Return the steady-state response (harmonic part of (10)) at phases, shape (n, 4)."""
-        return self.tabulate("find_steady", (phase, mode), 4)
+        return self.call_kernel("find_steady", (phase, mode), 4)
 
     def gap_at_end(self, outer: Ends) -> Floats:
+        """Return the gap at which the masses meet: 0, or the largest at the outer end."""
         return np.where(outer, self.limit, 0.0)
 
-    def centre(self) -> Floats:
+    def centre_matrix(self) -> Floats:
         """Return the (4, 4) matrix that sets both masses of a state to their centre of mass."""
         return np.asarray(np.kron(np.eye(2), [self.shares] * 2), dtype=float)
 
-    def field(self, state: Floats, phase: Floats, mode: Modes = FREE) -> Floats:
+    def state_rates(self, state: Floats, phase: Floats, mode: Modes = FREE) -> Floats:
         """Return d(state)/d(tau), the right-hand side of (6), for states (n, 4) at phases."""
-        return self.tabulate("find_rates", (phase, mode, *state.T), 4)
+        return self.call_kernel("find_rates", (phase, mode, *state.T), 4)
 
-    def gap_drive(self, phase: Floats, outer: Ends = False) -> Floats:
-        """Return the difference of the masses' harmonic right-hand sides, towards an end."""
-        return parting_sign(outer) * float(self.drive[1] - self.drive[0]) * np.sin(phase)
+    def harmonic_part_of_force(self, phase: Floats, outer: Ends = False) -> Floats:
+        """Return what the excitation adds to the contact force f (18): it is harmonic."""
+        return separating_sign(outer) * float(self.drive[1] - self.drive[0]) * np.sin(phase)
 
-    def force(
+    def contact_force(
         self, phase: Floats, position: Floats, velocity: Floats, outer: Ends = False
     ) -> Floats:
         """Return the contact force f (18) at phases, from mass 1 at an end; < 0: pressed."""
         constant = float(self.load[1] + (self.push[1] - self.push[0]))
         at_end = constant - self.stiffness[1] * self.gap_at_end(outer)
-        rate = self.force_rate(position, velocity, outer)
-        return rate + self.gap_drive(phase, outer) + parting_sign(outer) * at_end
+        linear = self.motion_part_of_force(position, velocity, outer)
+        return linear + self.harmonic_part_of_force(phase, outer) + separating_sign(outer) * at_end
 
-    def force_rate(self, position: Floats, velocity: Floats, outer: Ends = False) -> Floats:
-        """Return what the derivatives of position and velocity add to the contact force's."""
-        return parting_sign(outer) * (self.force_v * velocity + self.force_x * position)
+    def motion_part_of_force(
+        self, position: Floats, velocity: Floats, outer: Ends = False
+    ) -> Floats:
+        """Return what position and velocity add to f (18), or their derivatives to f's."""
+        return separating_sign(outer) * (self.force_v * velocity + self.force_x * position)
 
 
-def parting_sign(outer: Ends) -> Floats:
+def separating_sign(outer: Ends) -> Floats:
     """Return the sign of the gap's acceleration that parts the masses: -1 at the outer end."""
     return np.where(outer, -1.0, 1.0)
 
 
-def of_both_and_common(one: float, two: float, share: float) -> Floats:
-    """Return what both masses have, and twice what they have as one, by mass 2's share."""
-    both = one + share * (two - one)
-    return np.array([one, two, both, both])
+def values_per_oscillator(mass1: float, mass2: float, share: float) -> Floats:
+    """Return what each mass has, and twice their mean: what both have as one, by mass 2's share."""
+    both = mass1 + share * (mass2 - mass1)
+    return np.array([mass1, mass2, both, both])

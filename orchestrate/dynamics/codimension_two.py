@@ -24,10 +24,11 @@ from .continuation import (
     ArclengthStepper,
     NoConvergenceError,
     Root,
-    solve_between,
+    solve_by_brent,
     solve_linear,
 )
 from .families import central_difference
+from .orbit_tracer import unit_circle_test
 from .periodic_orbit import CLOSING, PeriodicOrbit
 from .turning_points import nearest_miss, turning_points
 
@@ -112,34 +113,36 @@ class CharacteristicPolynomial:
         polynomial = np.polynomial.Polynomial(self.coefficients)
         return float(polynomial.deriv()(multiplier))
 
-    def others(self, multiplier: float) -> NDArray[np.complex128]:
+    def other_multipliers(self, multiplier: float) -> NDArray[np.complex128]:
+        """Return the other three roots where one multiplier is known."""
         quotient, _ = np.polydiv(self.coefficients[::-1], np.array([1.0, -multiplier]))
         return np.asarray(np.roots(quotient), dtype=complex)
 
-    def pair_test(self, multiplier: float) -> float:
+    def other_pair_test(self, multiplier: float) -> float:
         """Return a test function that is 0 where two other multipliers have product 1."""
-        others = self.others(multiplier)
-        products = np.multiply.outer(others, others)[np.triu_indices(len(others), 1)]
-        return float(np.prod((1.0 - products) / (1.0 + np.abs(products))).real)
+        return unit_circle_test(self.other_multipliers(multiplier), pairs=True)
 
 
-def locate_points(
-    curve: BifurcationCurve, roots: list[Root], ends: tuple[str, str]
+def locate_codimension_two_points(
+    curve: BifurcationCurve, roots: list[Root], end_reasons: tuple[str, str]
 ) -> list[CodimensionTwoPoint]:
-    points = list(end_points(curve, roots[0], ends[0], 0.0))
-    for number, (before, after) in enumerate(zip(roots[:-1], roots[1:], strict=True)):
+    """Locate all points along a curve's roots in their order, at its ends too."""
+    points = list(locate_end_point(curve, roots[0], end_reasons[0], 0.0))
+    for index, (before, after) in enumerate(zip(roots[:-1], roots[1:], strict=True)):
         points += sorted(
-            points_between(curve, before, after, float(number)), key=lambda each: each.position
+            locate_points_between(curve, before, after, float(index)),
+            key=lambda each: each.position,
         )
     if len(roots) > 1:
-        points += end_points(curve, roots[-1], ends[1], len(roots) - 1.0)
+        points += locate_end_point(curve, roots[-1], end_reasons[1], len(roots) - 1.0)
     return points
 
 
-def points_between(
-    curve: BifurcationCurve, before: Root, after: Root, number: float
+def locate_points_between(
+    curve: BifurcationCurve, before: Root, after: Root, index: float
 ) -> Iterator[CodimensionTwoPoint]:
-    curve.update_border(before.unknowns)
+    """Yield the points between a root, with its index on the curve, and the next one."""
+    curve.update_bordering_vectors(before.unknowns)
     chord = (after.unknowns - before.unknowns) / curve.scale
     before, after = (
         root if root.tangent @ chord > 0.0 else root.reversed() for root in (before, after)
@@ -147,10 +150,10 @@ def points_between(
     length = float(chord @ before.tangent)
     stepper = ArclengthStepper(curve, before, length, length)
     try:
-        known = [characteristic_polynomial(curve, root.unknowns) for root in (before, after)]
+        polynomials = [characteristic_polynomial(curve, root.unknowns) for root in (before, after)]
     except SOLVER_ERRORS:
         return
-    log_size = max(polynomial.log_size for polynomial in known)
+    log_size = max(polynomial.log_size for polynomial in polynomials)
     for kind in ON_CURVE.get(curve.kind, ()):
 
         def value(position: float, kind: PointKind = kind) -> float:
@@ -160,27 +163,27 @@ def points_between(
         try:
             ends = [
                 test_function_value(curve, root, kind, polynomial)
-                for root, polynomial in zip((before, after), known, strict=True)
+                for root, polynomial in zip((before, after), polynomials, strict=True)
             ]
             if not (np.isfinite(ends).all() and ends[0] * ends[1] < 0.0):
                 continue
             if not ends[0] * value(length) < 0.0:  # only rounding: no sign is certain there
                 continue
-            position = solve_between(value, 0.0, length, **TOLERANCE)
+            position = solve_by_brent(value, 0.0, length, **TOLERANCE)
             root = stepper.root_after(position)
             residual = abs(test_function_value(curve, root, kind, log_size=log_size))
             is_point = residual < LOCATED and is_point_of_kind(curve, root, kind)
         except SOLVER_ERRORS:
             continue
         if is_point:
-            unknowns = root.unknowns[: curve.family.size + 2]
-            yield CodimensionTwoPoint(kind, unknowns, number + position / length, residual)
+            unknowns = root.unknowns[: curve.family.node_unknowns + 2]
+            yield CodimensionTwoPoint(kind, unknowns, index + position / length, residual)
 
 
 def characteristic_polynomial(
     curve: BifurcationCurve, unknowns: Floats, log_size: float = -np.inf
 ) -> CharacteristicPolynomial:
-    scale = curve.scale[: curve.family.size]
+    scale = curve.scale[: curve.family.node_unknowns]
     return CharacteristicPolynomial(curve.orbit(unknowns), scale, log_size)
 
 
@@ -188,20 +191,21 @@ def test_function_value(
     curve: BifurcationCurve,
     root: Root,
     kind: PointKind,
-    known: CharacteristicPolynomial | None = None,
+    polynomial: CharacteristicPolynomial | None = None,
     log_size: float = -np.inf,
 ) -> float:
+    """Return a kind's test function at a root; the polynomial is computed unless it is known."""
     if kind in ANGLES:
         return float(root.unknowns[-1] - ANGLES[kind])
     if kind == PointKind.CUSP:
         return cusp_test(curve, root)
-    polynomial = known or characteristic_polynomial(curve, root.unknowns, log_size)
+    polynomial = polynomial or characteristic_polynomial(curve, root.unknowns, log_size)
     if kind == PointKind.RESONANCE_1:
         return polynomial.slope(1.0)
     if kind == PointKind.RESONANCE_2:
         return polynomial.slope(-1.0)
     if kind in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) and curve.kind != Kind.TORUS:
-        return polynomial.pair_test(1.0 if kind == PointKind.FOLD_TORUS else -1.0)
+        return polynomial.other_pair_test(1.0 if kind == PointKind.FOLD_TORUS else -1.0)
     fold = kind in (PointKind.FOLD_TORUS, PointKind.GRAZING_FOLD)
     fold = fold or kind == PointKind.FOLD_FLIP and curve.kind == Kind.FLIP
     return polynomial(1.0 if fold else -1.0).real
@@ -211,8 +215,8 @@ def cusp_test(curve: BifurcationCurve, root: Root) -> float:
     """Return the test function of a cusp: the fold's speed in the parameter plane, signed."""
     # along a fold the motion is orthogonal to what the left null vector makes of the parameters'
     # derivatives: its sign on that line changes at a cusp
-    size = curve.family.size
-    matrix = curve.matrix(root.unknowns).real
+    size = curve.family.node_unknowns
+    matrix = curve.scaled_orbit_jacobian(root.unknowns).real
     bordered = np.zeros((size + 1, size + 1))
     bordered[:size, :size] = matrix
     bordered[:size, size], bordered[size, :size] = curve.columns.real, curve.rows.real
@@ -229,7 +233,7 @@ def is_point_of_kind(curve: BifurcationCurve, root: Root, kind: PointKind) -> bo
     if kind not in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) or curve.kind == Kind.TORUS:
         return True
     real = 1.0 if kind == PointKind.FOLD_TORUS else -1.0
-    others = characteristic_polynomial(curve, root.unknowns).others(real)
+    others = characteristic_polynomial(curve, root.unknowns).other_multipliers(real)
     pair = others[others.imag > 0.0]
     return bool((np.abs(np.abs(pair) - 1.0) < 1e-6).any())
 
@@ -237,9 +241,10 @@ def is_point_of_kind(curve: BifurcationCurve, root: Root, kind: PointKind) -> bo
 # -- where a curve ends ----------------------------------------------------------------------------
 
 
-def end_points(
+def locate_end_point(
     curve: BifurcationCurve, root: Root, reason: str, position: float
 ) -> Iterator[CodimensionTwoPoint]:
+    """Yield the point at which a curve ends for this reason, if it is one of codimension two."""
     grazes = reason in ("another impact grazes", "a flight grazes")
     if curve.kind == Kind.TORUS and "resonance" in reason:
         first = root.unknowns[-1] < 0.5 * np.pi
@@ -249,24 +254,27 @@ def end_points(
     else:
         return
     try:
-        yield solve_end(curve, root, kind, reason, position)
+        yield solve_end_point(curve, root, kind, reason, position)
     except (*SOLVER_ERRORS, InputError):
         return
 
 
-def solve_end(
+def solve_end_point(
     curve: BifurcationCurve, root: Root, kind: PointKind, reason: str, position: float
 ) -> CodimensionTwoPoint:
-    size = curve.family.size + 2
+    """Solve by Newton's method for the point next to a curve's last root."""
+    size = curve.family.node_unknowns + 2
     resonance = kind in (PointKind.RESONANCE_1, PointKind.RESONANCE_2)
-    curve.update_border(root.unknowns)
+    curve.update_bordering_vectors(root.unknowns)
 
     def conditions(unknowns: Floats) -> Floats:
         if resonance:
             polynomial = characteristic_polynomial(curve, unknowns)
             at = 1.0 if kind == PointKind.RESONANCE_1 else -1.0
             return np.array([polynomial(at).real, polynomial.slope(at)])
-        return np.append(curve.condition(unknowns), grazing_test(curve, unknowns, reason))
+        return np.append(
+            curve.bifurcation_condition(unknowns), grazing_test(curve, unknowns, reason)
+        )
 
     unknowns = root.unknowns[:size] if resonance else root.unknowns
     scale, first = curve.scale[: len(unknowns)], unknowns.copy()

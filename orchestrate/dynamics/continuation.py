@@ -57,7 +57,7 @@ class Root:
         return replace(self, tangent=-self.tangent)
 
 
-def solve_between(
+def solve_by_brent(
     function: Callable[[float], float], low: float, high: float, **tolerances: float
 ) -> float:
     """Solve by Brent's method for the zero of a function between two numbers."""
@@ -154,14 +154,19 @@ def unit_tangent(matrix: Floats) -> Floats:
         vector = np.linalg.svd(matrix[:-1])[2][-1]
     tangent: Floats = vector / np.linalg.norm(vector)
     # a tangent orthogonal to the last row has no side of it
-    return tangent if abs(float(matrix[-1] @ tangent)) > 1e-6 else fix_sign(tangent)
+    return (
+        tangent
+        if abs(float(matrix[-1] @ tangent)) > 1e-6
+        else with_positive_leading_component(tangent)
+    )
 
 
-def fix_sign(vector: Floats) -> Floats:
-    return vector if vector[leading_component(vector)] > 0.0 else -vector
+def with_positive_leading_component(vector: Floats) -> Floats:
+    """Return a vector or its negative, so that its sign does not depend on rounding."""
+    return vector if vector[leading_index(vector)] > 0.0 else -vector
 
 
-def leading_component(vector: NDArray[np.inexact]) -> int:
+def leading_index(vector: NDArray[np.inexact]) -> int:
     """Return the index of the first component nearly as large as the largest in size."""
     size = np.abs(vector)
     return int(np.argmax(size > 0.9 * size.max()))
@@ -193,7 +198,7 @@ class ArclengthStepper(Generic[AnyCurve]):
         return newton_correct(self.curve, guess, root.tangent, tolerance=self.tolerance)
 
     def step(self, accepts: Callable[[Root], bool] = lambda root: True) -> tuple[Root, float]:
-        """Step to the next root that ``accepts``, shortened where needed; return it, the length."""
+        """Find the next root that ``accepts``; return it and its arclength, and adapt the step."""
         length = self.length
         while length >= self.min_length:
             try:
@@ -215,7 +220,7 @@ class ArclengthStepper(Generic[AnyCurve]):
         limits: Sequence[tuple[float, float]],
         accepts: Callable[[Root], bool] = lambda root: True,
     ) -> tuple[Root, float, bool]:
-        """Step, at most onto a limit; return the root, the length, and whether it is on one."""
+        """Find the next root, at most on a limit; return it, its arclength, whether on a limit."""
         limit = self.next_limit(first, limits)
         if limit is not None:
             with contextlib.suppress(NoConvergenceError):
@@ -226,11 +231,11 @@ class ArclengthStepper(Generic[AnyCurve]):
             self.length *= 0.5
         low, high = np.transpose(limits)
 
-        def inside(root: Root) -> bool:
+        def accepts_within(root: Root) -> bool:
             limited = root.unknowns[first : first + len(limits)]
             return bool(((low <= limited) & (limited <= high)).all()) and accepts(root)
 
-        return *self.step(inside), False
+        return *self.step(accepts_within), False
 
     def next_limit(
         self, first: int, limits: Sequence[tuple[float, float]]
@@ -247,6 +252,7 @@ class ArclengthStepper(Generic[AnyCurve]):
         return nearest
 
     def solve_at(self, unknown: int, value: float) -> Root:
+        """Solve for the root near the tangent at which an unknown has this value."""
         rate = self.root.tangent[unknown] * self.curve.scale[unknown]
         length = (value - self.root.unknowns[unknown]) / rate
         guess = self.root.unknowns + length * self.root.tangent * self.curve.scale

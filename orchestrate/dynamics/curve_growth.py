@@ -66,6 +66,7 @@ class GrownCurve:
     end: str = ""
 
     def add(self, point: CurvePoint, distance: float) -> None:
+        """Append a point at a distance from the last one."""
         self.arclength.append((self.arclength[-1] if self.arclength else 0.0) + distance)
         self.points.append(point)
 
@@ -91,13 +92,14 @@ class CurveGrower:
         self.direction: Floats | None = None  # of the last chord
 
     def grow(self) -> GrownCurve:
+        """Compute points from s = 0 on until the curve is long enough, converges, or has many."""
         settings, curve = self.settings, GrownCurve()
         curve.add(self.image(0.0), 0.0)
         step, change_ahead = 0.05, None
         while not curve.end:
             last = curve.points[-1]
             if change_ahead is not None and last.s >= change_ahead.low.s:
-                self.cross_change(curve, change_ahead)
+                self.append_beyond_change(curve, change_ahead)
                 change_ahead, step = None, min(step, 1e-3)  # no bend is known there yet
                 curve.end = self.end_reason(curve)
                 continue
@@ -145,7 +147,7 @@ class CurveGrower:
             history.append((high.s - low.s, distance_between(low, high)))
         return ItineraryChange(low, high, history[-1][1], shrinking_power(history))
 
-    def cross_change(self, curve: GrownCurve, change: ItineraryChange) -> None:
+    def append_beyond_change(self, curve: GrownCurve, change: ItineraryChange) -> None:
         """Append the point beyond a change of itinerary: connected, or after a break."""
         # less than half of the power of a grazing impact is a jump
         broken = change.distance > STILL * self.settings.size and change.power < 0.25
@@ -155,6 +157,7 @@ class CurveGrower:
         self.direction = None
 
     def end_reason(self, curve: GrownCurve) -> str:
+        """Return why a curve ends at its last point, or "" while it goes on."""
         settings, last = self.settings, curve.points[-1]
         if curve.arclength[-1] >= settings.length:
             return LENGTH

@@ -30,7 +30,7 @@ from ..model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from ..response.questions import Point
 from ..response.respond import Response, respond
 from .continuation import SOLVER_ERRORS
-from .families import Setting, acting
+from .families import Setting, nonzero_pushes
 from .orbit_search import Guess, guess_from_impacts, least_periods, solve_orbit, why_no_motion
 from .periodic_orbit import ImpactSequence, PeriodicOrbit
 from .settled_motion import Floats, SettledMotion
@@ -55,7 +55,7 @@ class MotionDecider:
         self.plain, self.eventful, self.point, self.settings = plain, eventful, point, settings
         excitation = point.excitation
         box = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
-        self.system = Setting.fixed(point.structure, (*box, *acting(vars(excitation))))
+        self.system = Setting.fixed(point.structure, (*box, *nonzero_pushes(vars(excitation))))
         self.values = np.array([excitation.frequency])
         self.known: list[SettledMotion] = []
 
@@ -223,7 +223,7 @@ class MotionDecider:
         """Run the FMU from a state; return its impacts as a guess, from an impact-free phase on."""
         instance, frequency = self.eventful, self.point.excitation.frequency
         assert instance is not None
-        form, span = self.system.form(self.values), periods * self.point.excitation.period
+        form, span = self.system.closed_form(self.values), periods * self.point.excitation.period
         begin(instance, *self.point, state)
         times = instance.impacts(0.0, span).time
         if not len(times):
@@ -293,10 +293,10 @@ def reduce_to_least_period(orbit: PeriodicOrbit) -> PeriodicOrbit:
 
 def phase_far_from_impacts(orbit: PeriodicOrbit) -> float:
     """Return the phase, rad, in the middle of the orbit's longest time without impact."""
-    if not orbit.count:
+    if not orbit.node_count:
         return 0.0
     longest = int(orbit.durations.argmax())
-    middle = 0.5 * (orbit.begins[longest] + orbit.ends[longest])
+    middle = 0.5 * (orbit.begin_phases[longest] + orbit.end_phases[longest])
     return float(middle % (TURN * orbit.sequence.periods))
 
 

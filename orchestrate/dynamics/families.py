@@ -39,34 +39,36 @@ class Setting:
         return cls(structure, excitation, (name,), limits)
 
     def point(self, values: Floats) -> Point:
+        """Return structure and excitation at values of the parameters that vary."""
         varied = zip(self.over, map(float, values), strict=True)
         return make_point(self.structure, {**dict(self.excitation), **dict(varied)})
 
-    def orbit_call(self, values: Floats, period: int, guess: str) -> str:
+    def orbit_call_text(self, values: Floats, period: int, guess: str) -> str:
+        """Return Python source of the call of ``orbit`` at values of these parameters."""
         point, arguments = self.point(values), dict(self.excitation)
         arguments.update(zip(self.over, map(float, values), strict=True))
         shown = {name: arguments[name] for name in QUANTITIES if name in arguments}
         parts = [f"{name}={value!r}" for name, value in {**shown, "period": period}.items()]
         return f"orbit({', '.join([repr(point.structure), *parts, f'guess={guess}'])})"
 
-    def form(self, values: Floats) -> ClosedForm:
-        return closed_form(self, np.asarray(values, dtype=float).tobytes())
+    def closed_form(self, values: Floats) -> ClosedForm:
+        return cached_closed_form(self, np.asarray(values, dtype=float).tobytes())
 
 
 @functools.lru_cache(maxsize=64)
-def closed_form(setting: Setting, values: bytes) -> ClosedForm:
+def cached_closed_form(setting: Setting, values: bytes) -> ClosedForm:
     """Return the coefficients at values of the varying parameters, given as the array's bytes."""
     point = setting.point(np.frombuffer(values))
     point.excitation.check(point.structure)
     return ClosedForm.from_structure(*point)
 
 
-def acting(pushes: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
+def nonzero_pushes(pushes: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
     """Return the loads other than the box's harmonic motion, as (name, number), where not zero."""
     return tuple((name, float(pushes[name])) for name in PUSHES if pushes[name] != 0.0)
 
 
-def check_parameters(over: tuple[str, ...]) -> None:
+def require_known_parameters(over: tuple[str, ...]) -> None:
     box = (name for name in QUANTITIES if name != "level")  # the amplitude varies instead
     known = (*box, *PARAMETERS)
     for name in over:
@@ -92,21 +94,23 @@ class Family:
         return cls(setting, sequence, np.append(each, spans))
 
     @property
-    def size(self) -> int:
+    def node_unknowns(self) -> int:
         """Return the number of unknowns that are node coordinates (four per node)."""
         return 4 * len(self.sequence.kinds)
 
     @property
     def accuracy(self) -> float:
-        if not self.size:
+        if not self.node_unknowns:
             return RESIDUAL
         return RESIDUAL * float(self.scale[POSITION]) / np.sqrt(len(self.sequence.kinds))
 
     def orbit(self, unknowns: Floats) -> PeriodicOrbit:
         key = unknowns.tobytes()
         if self.last is None or self.last[0] != key:
-            nodes, form = unknowns[: self.size].copy(), self.setting.form(unknowns[self.size :])
-            self.last = key, PeriodicOrbit(self.sequence, form, nodes.reshape(-1, 4))
+            count = self.node_unknowns
+            form = self.setting.closed_form(unknowns[count:])
+            nodes = unknowns[:count].copy().reshape(-1, 4)
+            self.last = key, PeriodicOrbit(self.sequence, form, nodes)
         return self.last[1]
 
     def residual(self, unknowns: Floats) -> Floats:
@@ -114,19 +118,19 @@ class Family:
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
         """Return the residual's Jacobian: exact by nodes, by differences by parameters."""
-        sides = enumerate(self.setting.limits, self.size)
+        sides = enumerate(self.setting.limits, self.node_unknowns)
         columns = [central_difference(self.residual, unknowns, i, *at)[:, None] for i, at in sides]
         return np.hstack([self.orbit(unknowns).jacobian().real, *columns])
 
 
-class HeldFamily(Family):
-    """The same equations for Newton's method that holds the parameters."""
+class FixedParameterFamily(Family):
+    """The same equations, of which Newton's method solves for the nodes at fixed parameters."""
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
         """Return the Jacobian; only at the root with the parameters' columns."""
         if at_root:
             return super().jacobian(unknowns)
-        columns = np.zeros((self.size, len(self.setting.limits)))
+        columns = np.zeros((self.node_unknowns, len(self.setting.limits)))
         return np.hstack([self.orbit(unknowns).jacobian().real, columns])
 
 
@@ -138,12 +142,13 @@ def central_difference(
     high: float,
     step: float = 0.0,
 ) -> Floats:
+    """Return a function's derivative by one unknown, by differences within its limits."""
     value = unknowns[which]
     step = step or 1e-6 * max(abs(value), 1e-3 * (high - low))
     ends = []
-    for place in (value - step, value + step):
+    for end in (value - step, value + step):
         moved = unknowns.copy()
-        moved[which] = min(max(place, min(low, value)), max(high, value))
+        moved[which] = min(max(end, min(low, value)), max(high, value))
         ends.append((function(moved), moved[which]))
     (before, first), (after, last) = ends
     slope: Floats = (after - before) / (last - first)

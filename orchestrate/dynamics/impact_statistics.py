@@ -19,8 +19,8 @@ from ..response.signatures import as_given, question
 from ..running.job import Table
 from ..running.options import Running
 from .impacts_after_transient import FollowedResponse, ImpactsQuestion
-from .lyapunov import exponent_of
-from .variational import deviations, period_in_tau
+from .lyapunov import largest_exponent
+from .variational import deviation_matrices_and_contacts, period_in_tau
 
 FIELDS = {
     "impacts": "impacts per excitation period",
@@ -56,9 +56,10 @@ class ImpactStatisticsJob(ImpactsQuestion):
 
 
 def response_statistics(impacts: Impacts, item: FollowedResponse, periods: int) -> dict[str, float]:
+    """Return the numbers of ``FIELDS`` that a response's non-dimensional impacts give."""
     structure, excitation = item.point
     span = period_in_tau(excitation.eta(structure))
-    exponent = exponent_of(impacts, periods, item.point)
+    exponent = largest_exponent(impacts, periods, item.point)
     which = np.minimum((impacts.time / span).astype(int), periods - 1)
     each = np.bincount(which, minlength=periods)
     distances, closing = np.diff(impacts.time) / span, impacts.closing
@@ -91,7 +92,7 @@ def contact_time(impacts: Impacts, item: FollowedResponse, end: float) -> float:
             np.append(0.0, impacts.closing),
             np.append(True, impacts.sticks),
         )
-    return float(deviations(impacts, end, item.point)[1].sum())
+    return float(deviation_matrices_and_contacts(impacts, end, item.point)[1].sum())
 
 
 @question(ImpactStatisticsJob)

@@ -42,7 +42,7 @@ class ImpactsQuestion(StartedSeriesQuestion, ABC):
                 start = state_after_transient(plain, item, self.transient)
                 begin(eventful, *item.point, start)
                 (first,), state = eventful.get("in_contact"), tuple(eventful.get(*STATE))
-                impacts = follow_impacts(eventful, item.point, start, self.periods)
+                impacts = simulate_nondimensional_impacts(eventful, item.point, start, self.periods)
                 (last,) = eventful.get("in_contact")
                 rows.append(self.row(impacts, FollowedResponse(item.point, state, (first, last))))
         return {"rows": np.array(rows, dtype=float)}
@@ -53,6 +53,7 @@ class ImpactsQuestion(StartedSeriesQuestion, ABC):
 
 
 def state_after_transient(instance: Instance, item: FollowedResponse, transient: int) -> State:
+    """Run a response from its start for some periods; return its state at phase 0."""
     if not transient:
         return item.start
     begin(instance, *item.point, item.start)
@@ -60,8 +61,9 @@ def state_after_transient(instance: Instance, item: FollowedResponse, transient:
     return tuple(instance.get(*STATE))
 
 
-def follow_impacts(
+def simulate_nondimensional_impacts(
     instance: EventInstance, point: Point, start: ArrayLike, periods: int
 ) -> Impacts:
+    """Run from a state at phase 0 for some periods; return the impacts in the paper's units."""
     begin(instance, *point, start)
     return nondimensional_impacts(instance.impacts(0.0, periods * point.excitation.period), point)

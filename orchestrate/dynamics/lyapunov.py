@@ -27,11 +27,11 @@ from .closed_form import FREE, INNER, ClosedForm
 from .impacts_after_transient import FollowedResponse, ImpactsQuestion
 from .lyapunov_spectrum import (
     STATES,
+    bonded_spectrum,
     kaplan_yorke_dimension,
     lyapunov_spectrum,
-    spectrum_without_impacts,
 )
-from .variational import call_of, exponent_library, period_in_tau
+from .variational import exponent_library, library_arguments, period_in_tau
 
 PERIODIC, NEUTRAL, CHAOTIC = -1, 0, 1
 WORDS = {PERIODIC: "periodic", NEUTRAL: "neutral", CHAOTIC: "chaotic"}
@@ -49,33 +49,36 @@ class Exponent(NamedTuple):
 
 
 def min_impacts(batches: int = BATCHES) -> int:
+    """Return the fewest impacts from which an exponent has an error."""
     return 2 * batches
 
 
-def largest_exponent(
+def exponent_from_impacts(
     impacts: Impacts, end: float, point: Point, blocks: int = BLOCKS, batches: int = BATCHES
 ) -> Exponent:
+    """Return the largest exponent by non-dimensional impacts up to ``end``; NaN if too few."""
     if len(impacts.time) < min_impacts(batches):
         return Exponent(math.nan, math.nan)
-    call, found = call_of(impacts, end, point), np.empty(2)
-    places = call.memory.ctypes.data, found.ctypes.data
-    exponent_library().largest_exponent(*call.span, blocks, batches, *places)
-    return Exponent(float(found[0]), float(found[1]))
+    arguments, result = library_arguments(impacts, end, point), np.empty(2)
+    addresses = arguments.memory.ctypes.data, result.ctypes.data
+    exponent_library().largest_exponent(*arguments.span, blocks, batches, *addresses)
+    return Exponent(float(result[0]), float(result[1]))
 
 
-def exponent_of(
+def largest_exponent(
     impacts: Impacts, periods: int, point: Point, blocks: int = BLOCKS, batches: int = BATCHES
 ) -> Exponent:
     """Return a response's largest exponent and its error, the exact one if it never impacts."""
-    known = None if len(impacts.time) else exact_exponent_without_impacts(point)
+    exact = None if len(impacts.time) else exact_exponent_without_impacts(point)
     end = periods * period_in_tau(point.excitation.eta(point.structure))
-    return known or largest_exponent(impacts, end, point, blocks, batches)
+    return exact or exponent_from_impacts(impacts, end, point, blocks, batches)
 
 
 def exact_exponent_without_impacts(point: Point) -> Exponent | None:
+    """Return the exponent of the settled response that never impacts; None if there is none."""
     structure = point.structure
     form = ClosedForm.from_structure(*point)
-    mode = INNER if structure.bonded else form.linear_mode
+    mode = INNER if structure.bonded else form.impact_free_mode
     if mode < 0:
         return None
     if structure.wall and mode != FREE:  # nothing moves
@@ -84,14 +87,14 @@ def exact_exponent_without_impacts(point: Point) -> Exponent | None:
     return Exponent(-min(decay_rate(form.damping[i], form.stiffness[i]) for i in moving), 0.0)
 
 
-def decay_rate(damping: float, square: float) -> float:
+def decay_rate(damping: float, stiffness: float) -> float:
     """Return the decay rate of a damped oscillator's free motion (overdamped: the slower rate)."""
-    excess = square - damping**2
-    return damping if excess >= 0.0 else square / (damping + math.sqrt(-excess))
+    excess = stiffness - damping**2
+    return damping if excess >= 0.0 else stiffness / (damping + math.sqrt(-excess))
 
 
-def wander_floor(etas: Iterable[float], periods: int, wander: float = WANDER) -> Floats:
-    """Return what a deviation that only wanders, by this factor, makes of exponents at most."""
+def exponent_floors(etas: Iterable[float], periods: int, wander: float = WANDER) -> Floats:
+    """Return the exponents below which a deviation may only wander, by this factor, not grow."""
     spans = [periods * period_in_tau(eta) for eta in etas]
     return np.array([exponent_library().wander_floor(wander, span) for span in spans])
 
@@ -100,10 +103,10 @@ def classify_exponents(
     exponent: ArrayLike, error: ArrayLike, floor: ArrayLike, sigmas: float = SIGMAS
 ) -> NDArray[np.int8]:
     """Classify: 1 chaotic, -1 periodic, 0 neutral (within `sigmas` errors or `floor`, or NaN)."""
-    given = np.broadcast_arrays(exponent, error, floor)
-    rows = zip(*(each.ravel().tolist() for each in given), strict=True)
+    columns = np.broadcast_arrays(exponent, error, floor)
+    rows = zip(*(each.ravel().tolist() for each in columns), strict=True)
     verdicts = [exponent_library().classify_exponent(*map(float, row), sigmas) for row in rows]
-    return np.array(verdicts, dtype=np.int8).reshape(given[0].shape)
+    return np.array(verdicts, dtype=np.int8).reshape(columns[0].shape)
 
 
 class LyapunovJob(ImpactsQuestion):
@@ -116,13 +119,13 @@ class LyapunovJob(ImpactsQuestion):
         rate = len(impacts.time) / self.periods
         if not self.spectrum:
             return [*self.exponent(impacts, item), rate]
-        all_of_them = self.all_exponents(impacts, item)
-        largest = all_of_them[::STATES][:2]  # the largest one, and its error
+        spectrum = self.exponents_and_errors(impacts, item)
+        largest = spectrum[::STATES][:2]  # the largest exponent, and its error
         if not len(impacts.time):
             largest = np.array(self.exponent(impacts, item))
-        return [*largest, rate, *all_of_them]
+        return [*largest, rate, *spectrum]
 
-    def all_exponents(self, impacts: Impacts, item: FollowedResponse) -> NDArray[np.float64]:
+    def exponents_and_errors(self, impacts: Impacts, item: FollowedResponse) -> NDArray[np.float64]:
         """Return four exponents, then their errors; NaN if equal masses never separate."""
         structure = item.point.structure
         if len(impacts.time):
@@ -130,15 +133,16 @@ class LyapunovJob(ImpactsQuestion):
             end = self.periods * period_in_tau(item.point.excitation.eta(structure))
             spectrum = lyapunov_spectrum(impacts, end, item.point, self.blocks, self.batches)
         elif structure.bonded:
-            spectrum = spectrum_without_impacts(structure)
+            spectrum = bonded_spectrum(structure)
         else:
             return np.full(2 * STATES, math.nan)
         return np.concatenate(spectrum)
 
     def exponent(self, impacts: Impacts, item: FollowedResponse) -> Exponent:
+        """Return the largest exponent; raise where there are too few impacts for an error."""
         if len(impacts.time) or exact_exponent_without_impacts(item.point) is None:
             self.require_enough_impacts(impacts, item)
-        return exponent_of(impacts, self.periods, item.point, self.blocks, self.batches)
+        return largest_exponent(impacts, self.periods, item.point, self.blocks, self.batches)
 
     def require_enough_impacts(self, impacts: Impacts, item: FollowedResponse) -> None:
         count, needed = len(impacts.time), min_impacts(self.batches)
@@ -152,7 +156,7 @@ class LyapunovJob(ImpactsQuestion):
 
     def dataset(self, table: Table) -> xr.Dataset:
         along, (exponent, error, impacts) = self.series.name, table["rows"].T[:3]
-        floor = wander_floor(self.series.etas, self.periods, self.wander)
+        floor = exponent_floors(self.series.etas, self.periods, self.wander)
         verdicts = classify_exponents(exponent, error, floor, self.sigmas)
         variables: dict[str, Variable] = {
             "exponent": variable(along, exponent, "1", f"{LARGEST}, per unit of tau"),
@@ -169,6 +173,7 @@ class LyapunovJob(ImpactsQuestion):
 
 
 def spectrum_variables(along: str, rows: NDArray[np.float64]) -> dict[str, Variable]:
+    """Return variables of rows of four exponents and their errors, with the dimension."""
     exponents, errors = rows[:, :STATES], rows[:, STATES:]
     dimensions = [kaplan_yorke_dimension(row) for row in exponents]
     text = "Kaplan-Yorke dimension of the attractor in the stroboscopic section"

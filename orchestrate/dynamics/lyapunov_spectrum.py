@@ -17,7 +17,7 @@ from ..fmu import Impacts
 from ..model import Structure
 from ..response.questions import Point
 from .closed_form import Floats
-from .variational import deviations, exponent_library
+from .variational import deviation_matrices_and_contacts, exponent_library
 
 STATES = 4
 CONTACT_RANK = 2  # of a matrix where permanent contact begins
@@ -39,16 +39,17 @@ class BlockGrowth(NamedTuple):
 
 def block_growth(matrices: Floats, times: Floats, end: float, blocks: int) -> BlockGrowth | None:
     """Return a vector's logarithmic growth over blocks of matrices; None if it becomes zero."""
-    given = np.ascontiguousarray(matrices)
-    count, rows = given.shape[:2]
+    matrices = np.ascontiguousarray(matrices)
+    count, rows = matrices.shape[:2]
     size = max(1, count // blocks)
     growth = np.empty(-(-count // size))
-    if not exponent_library().find_growth(given.ctypes.data, count, rows, size, growth.ctypes.data):
+    addresses = matrices.ctypes.data, growth.ctypes.data
+    if not exponent_library().find_growth(addresses[0], count, rows, size, addresses[1]):
         return None
     return BlockGrowth(growth, np.diff(np.append(times[::size], end)))
 
 
-def growth_by_batch_means(blocks: BlockGrowth, batches: int) -> tuple[float, float]:
+def mean_growth_and_error(blocks: BlockGrowth, batches: int) -> tuple[float, float]:
     """Return the mean growth per unit of tau, and its standard error by batch means."""
     growth, durations = (np.ascontiguousarray(column) for column in blocks)
     mean, columns = np.empty(2), (growth.ctypes.data, durations.ctypes.data)
@@ -68,7 +69,8 @@ def compound_matrices(matrices: Floats, order: int) -> Floats:
 def lyapunov_spectrum(
     impacts: Impacts, end: float, point: Point, blocks: int, batches: int
 ) -> Spectrum:
-    matrices, _ = deviations(impacts, end, point)
+    """Return the exponents by non-dimensional impacts up to ``end``: -inf beyond the rank."""
+    matrices, _ = deviation_matrices_and_contacts(impacts, end, point)
     rank = CONTACT_RANK if impacts.sticks.any() else STATES
     exponents, errors = np.full(STATES, -math.inf), np.full(STATES, math.nan)
     before: Floats | None = None
@@ -78,13 +80,13 @@ def lyapunov_spectrum(
             break
         growth = volumes.growth if before is None else volumes.growth - before
         before = volumes.growth
-        exponents[order - 1], errors[order - 1] = growth_by_batch_means(
+        exponents[order - 1], errors[order - 1] = mean_growth_and_error(
             volumes._replace(growth=growth), batches
         )
     return Spectrum(exponents, errors)
 
 
-def spectrum_without_impacts(structure: Structure) -> Spectrum:
+def bonded_spectrum(structure: Structure) -> Spectrum:
     """Return the exact spectrum of a bonded structure: damped common motion (10), gap -inf."""
     damping, square = structure.D3, (1.0 + structure.kappa) / (1.0 + structure.mu)
     excess = complex(damping**2 - square) ** 0.5

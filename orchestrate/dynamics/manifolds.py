@@ -21,15 +21,20 @@ from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from . import curve_growth
-from .branches import complete_excitation, orbit_at, pushes_at_start, require_orbit_dataset
+from .branches import (
+    complete_excitation,
+    compute_start_orbit,
+    pushes_at_start,
+    require_orbit_dataset,
+)
 from .closed_form import Floats
-from .continuation import SOLVER_ERRORS, fix_sign
+from .continuation import SOLVER_ERRORS, with_positive_leading_component
 from .orbit_records import pad_rows
 from .orbit_search import solve_orbit
 from .orbits import (
     FirstGuess,
     SingleOrbitQuestion,
-    call_from_start,
+    call_text_from_start,
     excitation_arguments,
     guess_from_result,
 )
@@ -81,11 +86,11 @@ class Saddle:
         return self.periods if self.multiplier > 0.0 else 2 * self.periods
 
 
-def round_off_last_bits(numbers: Floats, size: float, to: float = ROUNDED[0]) -> Floats:
-    """Round numbers to a multiple of ``to`` times ``size``: equal on all processors."""
+def round_off_last_bits(numbers: Floats, size: float, unit: float = ROUNDED[0]) -> Floats:
+    """Round to a multiple of ``unit`` times ``size``, a power of 2: equal on all processors."""
     # all that follows from them is the FMU's, and the same everywhere
-    unit = to * 2.0 ** math.floor(math.log2(size))
-    return np.asarray(np.round(numbers / unit) * unit)
+    step = unit * 2.0 ** math.floor(math.log2(size))
+    return np.asarray(np.round(numbers / step) * step)
 
 
 def unstable_direction(orbit: PeriodicOrbit) -> Floats:
@@ -94,13 +99,13 @@ def unstable_direction(orbit: PeriodicOrbit) -> Floats:
     node = vectors[:, np.argmax(np.abs(values))].real
     form, phase = orbit.form, orbit.nodes[:1, PHASE]
     mode = orbit.modes[-1:]
-    arrival = np.linalg.solve(orbit.reductions[-1], np.append(0.0, node[1:]))
-    rate = form.field(orbit.arrivals[-1:], orbit.ends[-1:], mode)[0]
+    arrival = np.linalg.solve(orbit.reduction_matrices[-1], np.append(0.0, node[1:]))
+    rate = form.state_rates(orbit.end_states[-1:], orbit.end_phases[-1:], mode)[0]
     deviation = arrival - rate * node[PHASE] / form.eta
-    vector = form.flow(-phase / form.eta, mode)[0] @ deviation
-    if orbit.contact[-1]:
-        vector = form.centre() @ vector
-    vector = fix_sign(vector / np.linalg.norm(vector))
+    vector = form.flow_matrices(-phase / form.eta, mode)[0] @ deviation
+    if orbit.in_contact[-1]:
+        vector = form.centre_matrix() @ vector
+    vector = with_positive_leading_component(vector / np.linalg.norm(vector))
     gap = vector[1] - vector[0]
     return -vector if gap < 0.0 else vector
 
@@ -113,14 +118,15 @@ class ManifoldJob(SingleOrbitQuestion):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.saddle()  # fail early if there is no saddle
+        self.solve_saddle()  # fail early if there is no saddle
 
     def format_call(self) -> str:
         names = ("length", "spacing", "angle", "distance", "most")
         keywords = {name: getattr(self, name) for name in names}
-        return call_from_start(self, self.values, **keywords)
+        return call_text_from_start(self, self.values, **keywords)
 
-    def saddle(self) -> Saddle:
+    def solve_saddle(self) -> Saddle:
+        """Solve for the saddle; raise unless both sides may begin at the distance asked for."""
         guess = self.start.as_guess(self.period)
         try:
             family, root = solve_orbit(self.setting, guess, self.values)
@@ -144,7 +150,7 @@ class ManifoldJob(SingleOrbitQuestion):
         return saddle
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
-        saddle = self.saddle()
+        saddle = self.solve_saddle()
         with Instance(fmus[OSCILLATOR]) as instance:
             growth, largest = math.log(saddle.growth_factor), float(np.abs(saddle.state).max())
             settings = curve_growth.GrowthSettings(
@@ -158,13 +164,13 @@ class ManifoldJob(SingleOrbitQuestion):
             )
             curves = [
                 curve_growth.CurveGrower(
-                    self.point_function(instance, saddle, sign), settings
+                    self.make_point_function(instance, saddle, sign), settings
                 ).grow()
                 for sign in (1.0, -1.0)
             ]
         return {**curves_table(curves, saddle), "saddle": saddle.state[np.newaxis]}
 
-    def point_function(
+    def make_point_function(
         self, instance: Instance, saddle: Saddle, sign: float
     ) -> Callable[[float], curve_growth.CurvePoint]:
         """Return a function s -> point of one side, which iterates the stroboscopic map."""
@@ -178,13 +184,14 @@ class ManifoldJob(SingleOrbitQuestion):
             values = np.array(instance.get("x1", "x2", "v1", "v2", *COUNTS), dtype=float)
             return point.faces(values[:4]), values[4:]
 
-        own = run(saddle.state, 1)[1]  # what happens on the orbit itself is no change
+        orbit_counts = run(saddle.state, 1)[1]  # what happens on the orbit itself is no change
 
         def image(s: float) -> curve_growth.CurvePoint:
             returns = math.floor(s)
             distance = self.distance * saddle.size * saddle.growth_factor ** (s - returns)
             state, counts = run(saddle.state + sign * distance * saddle.direction, returns)
-            return curve_growth.CurvePoint(s, state, tuple(int(n) for n in counts - returns * own))
+            itinerary = tuple(int(n) for n in counts - returns * orbit_counts)
+            return curve_growth.CurvePoint(s, state, itinerary)
 
         return image
 
@@ -346,11 +353,11 @@ def manifold(
     require_delaminated(structure, "manifold")
     arguments = excitation_arguments(eta, frequency, amplitude)
     if start is not None:
-        require_orbit_dataset(start, several=False)
+        require_orbit_dataset(start, allow_several=False)
     pushes = pushes_at_start(start, box_acceleration=box_acceleration, force1=force1, force2=force2)
     if start is None:
-        start = orbit_at(structure, {**dict(arguments), **pushes}, period, running)
-    given = complete_excitation(start, ("e",), arguments, (0.0, 0.0), structure, pushes)
-    excitation = tuple(pair for pair in given if pair[0] not in pushes)
-    own = {**pushes, "excitation": excitation, "period": start.sizes["sample"]}
-    return as_given(start=guess_from_result(start), **own)
+        start = compute_start_orbit(structure, {**dict(arguments), **pushes}, period, running)
+    complete = complete_excitation(start, ("e",), arguments, (0.0, 0.0), structure, pushes)
+    excitation = tuple(pair for pair in complete if pair[0] not in pushes)
+    fields = {**pushes, "excitation": excitation, "period": start.sizes["sample"]}
+    return as_given(start=guess_from_result(start), **fields)

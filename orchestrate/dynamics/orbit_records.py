@@ -23,7 +23,7 @@ from ..response.questions import Point
 from ..running.job import Table
 from .closed_form import Floats
 from .families import Family, Setting
-from .orbit_search import check_orbit_in_fmu
+from .orbit_search import compare_with_fmu
 from .periodic_orbit import AT_OUTER_END, CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
 from .turning_points import (
     Amplitudes,
@@ -90,8 +90,8 @@ VARIABLES: dict[str, tuple[tuple[str, ...], str, str, Mapping[int, str]]] = {
 
 def orbit_row(instance: EventInstance, family: Family, unknowns: Floats, residual: float) -> Table:
     """Return all stored numbers of a root's orbit, checked by a run in the FMU."""
-    orbit, values = family.orbit(unknowns), unknowns[family.size :]
-    same, away = check_orbit_in_fmu(instance, family.setting, values, orbit)
+    orbit, values = family.orbit(unknowns), unknowns[family.node_unknowns :]
+    same, away = compare_with_fmu(instance, family.setting, values, orbit)
     turns = turning_points(orbit)
     nodes, first = rotate_to_phase_zero(orbit.nodes, orbit.sequence.periods)
     multipliers, amplitudes = orbit.multipliers(), Amplitudes.from_orbit(orbit, turns)
@@ -112,6 +112,7 @@ def orbit_row(instance: EventInstance, family: Family, unknowns: Floats, residua
 
 
 def pad_rows(rows: Sequence[Floats], fill: float) -> Floats:
+    """Stack arrays of different length in one, with a number filled in after the shorter ones."""
     most = max(len(row) for row in rows)
     table = np.full((len(rows), most, *rows[0].shape[1:]), fill)
     for index, row in enumerate(rows):
@@ -120,17 +121,19 @@ def pad_rows(rows: Sequence[Floats], fill: float) -> Floats:
 
 
 def orbit_table(rows: Sequence[Table]) -> Table:
+    """Stack the rows of orbits to columns, padded where they have different numbers of nodes."""
     columns = {name: [row[name] for row in rows] for name in rows[0]}
     padded = {"kinds": pad_rows(columns.pop("kinds"), -1).astype(int)}
     padded["nodes"] = pad_rows(columns.pop("nodes"), np.nan)
     return {**padded, **{name: np.array(column) for name, column in columns.items()}}
 
 
-def located_table(prefix: str, orbits: Sequence[Table], located: Sequence[Any]) -> Table:
-    rows = orbit_table(orbits) if orbits else {}
-    rows["kind"] = np.array([each.kind for each in located], dtype=int)
-    rows["place"] = np.array([each.position for each in located], dtype=float)
-    return {f"{prefix}_{name}": column for name, column in rows.items()}
+def located_table(prefix: str, rows: Sequence[Table], located: Sequence[Any]) -> Table:
+    """Stack the rows of points located on a branch, with their kinds and positions, by a prefix."""
+    columns = orbit_table(rows) if rows else {}
+    columns["kind"] = np.array([each.kind for each in located], dtype=int)
+    columns["place"] = np.array([each.position for each in located], dtype=float)
+    return {f"{prefix}_{name}": column for name, column in columns.items()}
 
 
 def split_located(table: Table, prefix: str) -> tuple[Table, Table]:
@@ -165,11 +168,13 @@ def orbit_variables(setting: Setting, table: Table, row: str) -> dict[str, Varia
     points = [setting.point(values) for values in table["values"]]
     frequency = np.array([point.excitation.frequency for point in points])
     omega = np.array([point.structure.omega for point in points])
-    closed = np.array([setting.form(values).rest_mode > 0 for values in table["values"]])
+    rests_closed = np.array(
+        [setting.closed_form(values).rest_mode > 0 for values in table["values"]]
+    )
     nodes, kinds = table["nodes"], table["kinds"]
     columns = {
         **state_columns(table["zero"], points),
-        **impact_columns(table, points, frequency, closed),
+        **impact_columns(table, points, frequency, rests_closed),
         **stability_columns(table, frequency / omega),
         **dict(zip(("xi1_max", "xi2_max", "xi_rel_max"), table["amplitudes"].T, strict=True)),
         **{"nearest_miss": table["nearest_miss"], "residual": table["residual"]},
@@ -194,6 +199,10 @@ def located_variables(
     parameters: Mapping[str, str],
     kept: Sequence[str],
 ) -> dict[str, Variable]:
+    """Return variables of points located on a branch, by a prefix: their kinds, ``kept`` ones.
+
+    ``kinds`` has the long name and meanings of the kinds, ``parameters`` labels by parameter.
+    """
     line = "branch" if len(setting.over) == 1 else "curve"
     place = f"position along the {line}'s points: between two where not whole"
     data = {
@@ -207,8 +216,8 @@ def located_variables(
     data |= {f"{prefix}_{label}": values[name] for name, label in parameters.items()}
     for name, (dims, column, attributes) in orbit_variables(setting, rows, prefix).items():
         if name in kept:
-            own = tuple(f"{prefix}_node" if dim == "node" else dim for dim in dims)
-            data[f"{prefix}_{name}"] = own, column, attributes
+            prefixed = tuple(f"{prefix}_node" if dim == "node" else dim for dim in dims)
+            data[f"{prefix}_{name}"] = prefixed, column, attributes
     return data
 
 
@@ -229,17 +238,17 @@ def state_columns(zero: Floats, points: Sequence[Point]) -> dict[str, Floats]:
 
 
 def impact_columns(
-    table: Table, points: Sequence[Point], frequency: Floats, closed: NDArray[np.bool_]
+    table: Table, points: Sequence[Point], frequency: Floats, rests_closed: NDArray[np.bool_]
 ) -> dict[str, NDArray[Any]]:
     """Return the orbits' impacts: times, speeds, rate; NaN for releases."""
     nodes, kinds, speed = table["nodes"], table["kinds"], np.array([[p.speed] for p in points])
     released = (kinds >= 0) & (kinds % AT_OUTER_END == RELEASE)
-    there = (kinds >= 0) & ~released
+    is_impact = (kinds >= 0) & ~released
     return {
-        "impact_time": np.where(there, nodes[:, :, PHASE] / frequency[:, None], np.nan),
-        "impact_velocity": np.where(there, nodes[:, :, CLOSING] * speed, np.nan),
-        "impacts_per_period": there.sum(axis=1) / table["zero"].shape[1],
-        "permanent_contact": released.any(axis=1) | (closed & (kinds < 0).all(axis=1)),
+        "impact_time": np.where(is_impact, nodes[:, :, PHASE] / frequency[:, None], np.nan),
+        "impact_velocity": np.where(is_impact, nodes[:, :, CLOSING] * speed, np.nan),
+        "impacts_per_period": is_impact.sum(axis=1) / table["zero"].shape[1],
+        "permanent_contact": released.any(axis=1) | (rests_closed & (kinds < 0).all(axis=1)),
     }
 
 

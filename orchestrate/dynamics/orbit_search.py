@@ -11,7 +11,7 @@ from ..fmu import EventInstance, Impacts, begin
 from ..response.questions import Point
 from .closed_form import INNER, OUTER, ClosedForm, Floats
 from .continuation import SOLVER_ERRORS, NoConvergenceError, Root, newton_correct, unit_vector
-from .families import Family, HeldFamily, Setting
+from .families import Family, FixedParameterFamily, Setting
 from .periodic_orbit import (
     AT_OUTER_END,
     CLOSING,
@@ -34,9 +34,10 @@ from .variational import contact_durations
 Guess = tuple[ImpactSequence, Floats]
 
 
-def guess_from_state(
+def simulate_guess(
     instance: EventInstance, point: Point, form: ClosedForm, state: Floats, periods: int
 ) -> Guess:
+    """Run the FMU from a state at phase 0 over some periods; return an orbit guess of them."""
     begin(instance, *point, state)
     impacts = instance.impacts(0.0, periods * point.excitation.period)
     return guess_from_impacts(impacts, point, form, periods)
@@ -74,7 +75,9 @@ def release_node(form: ClosedForm, stick: Floats, until: float, outer: bool) -> 
         return None
     mode, released = np.where(end, OUTER, INNER), phase + form.eta * duration
     free = start - form.steady_response(phase, mode)
-    state = form.flow(duration, mode)[0] @ free[0] + form.steady_response(released, mode)[0]
+    state = (
+        form.flow_matrices(duration, mode)[0] @ free[0] + form.steady_response(released, mode)[0]
+    )
     return np.array([float(released[0]), state[0], state[2], 0.0])
 
 
@@ -114,13 +117,14 @@ def solve_orbit(
     max_iterations: int = 25,
     max_distance: float = 100.0,
 ) -> tuple[Family, Root]:
+    """Solve by Newton's method for the orbit at fixed parameters near a guess."""
     sequence, nodes = guess
     family = Family.from_nodes(setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), values)
-    across = unit_vector(len(unknowns), family.size)
-    held = HeldFamily(setting, sequence, family.scale)
+    normal = unit_vector(len(unknowns), family.node_unknowns)
+    fixed = FixedParameterFamily(setting, sequence, family.scale)
     return family, newton_correct(
-        held, unknowns, across, max_iterations=max_iterations, max_distance=max_distance
+        fixed, unknowns, normal, max_iterations=max_iterations, max_distance=max_distance
     )
 
 
@@ -128,7 +132,7 @@ def why_no_motion(orbit: PeriodicOrbit) -> str:
     """Return why a solved orbit is no possible motion (masses overlap ...); empty if it is one."""
     if (orbit.durations <= 0.0).any():
         return "its impacts are out of order"
-    closing = orbit.nodes[~orbit.sequence.releases, CLOSING] if orbit.count else np.ones(1)
+    closing = orbit.nodes[~orbit.sequence.releases, CLOSING] if orbit.node_count else np.ones(1)
     if not (closing > 0.0).all():
         return "an impact has no closing speed"
     if nearest_miss(orbit, turning_points(orbit))[0] < 0.0:
@@ -140,7 +144,7 @@ def why_no_motion(orbit: PeriodicOrbit) -> str:
 
 def least_periods(orbit: PeriodicOrbit, within: float = 1e-6) -> int:
     """Return the orbit's least period in excitation periods, by comparing shifted nodes."""
-    periods, count = orbit.sequence.periods, orbit.count
+    periods, count = orbit.sequence.periods, orbit.node_count
     kinds, span = np.array(orbit.sequence.kinds), TURN * orbit.sequence.periods
     size = float(np.abs(orbit.nodes[:, 1:]).max(initial=0.0)) or 1.0
     for part in range(1, periods):
@@ -157,9 +161,13 @@ def least_periods(orbit: PeriodicOrbit, within: float = 1e-6) -> int:
     return periods
 
 
-def check_orbit_in_fmu(
+def compare_with_fmu(
     instance: EventInstance, setting: Setting, values: Floats, orbit: PeriodicOrbit
 ) -> tuple[bool, float]:
+    """Run an orbit's period in the FMU; return whether impacts are the same, and the return's miss.
+
+    The miss is how far from its first state the FMU returns, over a eta^2.
+    """
     point = setting.point(values)
     state = stroboscopic_states(orbit)[0]
     begin(instance, *point, point.from_faces(state))
@@ -169,23 +177,29 @@ def check_orbit_in_fmu(
     away = float(np.abs(after - state).max())
     nodes, first = rotate_to_phase_zero(orbit.nodes, orbit.sequence.periods)
     kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)
-    wanted, kinds = nodes[kinds % AT_OUTER_END != RELEASE], kinds[kinds % AT_OUTER_END != RELEASE]
+    is_impact = kinds % AT_OUTER_END != RELEASE
+    expected, kinds = nodes[is_impact], kinds[is_impact]
     phases, sticks = point.excitation.frequency * observed.time, observed.sticks
-    if len(phases) != len(wanted):
+    if len(phases) != len(expected):
         # of the motion's speed the square root of a gap's rounding is 1e-8
-        grazing = 1e-6 * float(np.abs(orbit.arrivals[:, 2:]).max())
-        here, there = observed.closing / point.speed > grazing, wanted[:, CLOSING] > grazing
-        phases, sticks = phases[here], sticks[here]
-        wanted, kinds = wanted[there], kinds[there]
-    if len(phases) != len(wanted):
+        grazing = 1e-6 * float(np.abs(orbit.end_states[:, 2:]).max())
+        is_observed = observed.closing / point.speed > grazing
+        is_expected = expected[:, CLOSING] > grazing
+        phases, sticks = phases[is_observed], sticks[is_observed]
+        expected, kinds = expected[is_expected], kinds[is_expected]
+    if len(phases) != len(expected):
         return False, away
-    near = np.abs(phases - wanted[:, PHASE]).max(initial=0.0) < 1e-6  # rad
+    near = np.abs(phases - expected[:, PHASE]).max(initial=0.0) < 1e-6  # rad
     return bool(near and (sticks == (kinds % AT_OUTER_END == STICK)).all()), away
 
 
 def first_possible_orbit(
-    setting: Setting, guesses: Iterable[Guess], values: Floats, *, stable: bool = False
+    setting: Setting, guesses: Iterable[Guess], values: Floats, *, prefer_stable: bool = False
 ) -> tuple[Family, Root]:
+    """Return the first orbit of the guesses that is a possible motion, of full period.
+
+    With ``prefer_stable`` the first stable one, if there is any.
+    """
     reason, unstable = "", None
     for guess in guesses:
         try:
@@ -197,7 +211,7 @@ def first_possible_orbit(
         why = why_no_motion(orbit)
         if not why and least_periods(orbit) < guess[0].periods:
             why = f"the orbit found repeats after {least_periods(orbit)} already"
-        if not why and (not stable or orbit.stable):
+        if not why and (not prefer_stable or orbit.stable):
             return family, root
         unstable = unstable or (None if why else (family, root))
         reason = reason or why

@@ -50,14 +50,14 @@ class OrbitPoint:
 
     @property
     def values(self) -> Floats:
-        return self.root.unknowns[self.family.size :]
+        return self.root.unknowns[self.family.node_unknowns :]
 
     @cached_property
     def multipliers(self) -> NDArray[np.complex128]:
         return self.orbit.multipliers()
 
     @cached_property
-    def pairs(self) -> NDArray[np.complex128]:
+    def upper_multipliers(self) -> NDArray[np.complex128]:
         """Return one multiplier of each complex-conjugate pair, the one with imaginary part > 0."""
         return self.multipliers[self.multipliers.imag > 0.0]
 
@@ -71,15 +71,15 @@ class OrbitPoint:
         """Return each impact's margin in the sticking condition (17): negative where it sticks."""
         orbit, form = self.orbit, self.orbit.form
         phase, position, velocity, closing = orbit.nodes.T
-        force = form.force(phase, position, velocity, orbit.sequence.outer)
-        margins = 2.0 * form.parting(closing) + form.sticking_time * force
+        force = form.contact_force(phase, position, velocity, orbit.sequence.outer)
+        margins = 2.0 * form.separation_speed(closing) + form.sticking_time * force
         return np.where(force < 0.0, margins, np.inf)
 
     @property
-    def wrong_contact(self) -> bool:
-        """Return whether an impact sticks, or not, against the sticking condition (17)."""
+    def violates_sticking_condition(self) -> bool:
+        """Return whether an impact sticks, or does not, against the sticking condition (17)."""
         # where (17) is all but met either will do: rounding must not decide how an orbit continues
-        if not self.orbit.count:
+        if not self.orbit.node_count:
             return False
         return min(self.contact_margin(kind) for kind in CONTACT_KINDS) <= -STICK_TOLERANCE
 
@@ -88,15 +88,15 @@ class OrbitPoint:
         orbit = self.orbit
         margins = np.minimum(self.sticking_margins, 1.0)
         if kind == Kind.CONTACT_LOST:
-            return float(np.minimum(-margins, orbit.durations)[orbit.contact].min(initial=1.0))
-        return float(margins[~(orbit.contact | orbit.sequence.releases)].min(initial=1.0))
+            return float(np.minimum(-margins, orbit.durations)[orbit.in_contact].min(initial=1.0))
+        return float(margins[~(orbit.in_contact | orbit.sequence.releases)].min(initial=1.0))
 
     def test_function(self, kind: Kind) -> float:
         """Return the test function of a bifurcation kind: it changes sign at the bifurcation."""
         if kind == Kind.FOLD:
-            return float(self.root.tangent[self.family.size])
+            return float(self.root.tangent[self.family.node_unknowns])
         if kind in (Kind.FLIP, Kind.TORUS):
-            return scaled_product(self.multipliers, pairs=kind == Kind.TORUS)
+            return unit_circle_test(self.multipliers, pairs=kind == Kind.TORUS)
         if kind == Kind.GRAZING:
             closing = self.orbit.nodes[~self.orbit.sequence.releases, CLOSING]
             return float(closing.min(initial=np.inf))
@@ -107,21 +107,25 @@ class OrbitPoint:
         return self.contact_margin(kind)
 
     def zero_is_bifurcation(self, kind: Kind) -> bool:
+        """Return whether a test function's zero here is a true bifurcation."""
         # the product of two real multipliers may be 1 as well as that of a pair on the unit circle
         if kind != Kind.TORUS:
             return True
-        return bool((np.abs(np.abs(self.pairs) - 1.0) < 1e-6).any())
+        return bool((np.abs(np.abs(self.upper_multipliers) - 1.0) < 1e-6).any())
 
     def reversed(self) -> OrbitPoint:
         return OrbitPoint(self.family, self.root.reversed())
 
 
-def scaled_product(multipliers: NDArray[np.complex128], *, pairs: bool) -> float:
-    """Return the product of 1 + multiplier, or 1 - two, over their sizes; NaN if grazing."""
+def unit_circle_test(multipliers: NDArray[np.complex128], *, pairs: bool) -> float:
+    """Return what is zero if a multiplier is -1, or if two have the product 1; NaN if grazing.
+
+    It is the product of 1 + multiplier, or of 1 - that of two, each over its size.
+    """
     with np.errstate(invalid="ignore"):
         values = -multipliers
         if pairs:
-            values = np.multiply.outer(values, values)[np.triu_indices(4, 1)]
+            values = np.multiply.outer(values, values)[np.triu_indices(len(values), 1)]
         return float(np.prod((1.0 - values) / (1.0 + np.abs(values))).real)
 
 
@@ -141,16 +145,16 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         stepper = ArclengthStepper(start.family, start.root, first, longest)
         super().__init__(stepper, settings.max_points)
 
-    def point(self, root: Root) -> OrbitPoint:
+    def make_point(self, root: Root) -> OrbitPoint:
         return OrbitPoint(self.stepper.curve, root)
 
-    def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
+    def limited_unknowns(self) -> tuple[int, Sequence[tuple[float, float]]]:
         family = self.stepper.curve
-        return family.size, family.setting.limits
+        return family.node_unknowns, family.setting.limits
 
     def accepts(self, root: Root) -> bool:
         orbit = self.stepper.curve.orbit(root.unknowns)
-        return bool((orbit.durations[~orbit.contact] > 0.0).all())
+        return bool((orbit.durations[~orbit.in_contact] > 0.0).all())
 
     def test_function(self, point: OrbitPoint, kind: Kind) -> float:
         return point.test_function(kind)
@@ -158,17 +162,19 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     def zero_is_bifurcation(self, kind: Kind, point: OrbitPoint, part: float) -> bool:
         return part > 1e-7 and point.zero_is_bifurcation(kind)
 
-    def locate(self, step: BranchStep[OrbitPoint]) -> list[LocatedBifurcation[OrbitPoint]]:
-        located = super().locate(step)
+    def locate_bifurcations(
+        self, step: BranchStep[OrbitPoint]
+    ) -> list[LocatedBifurcation[OrbitPoint]]:
+        located = super().locate_bifurcations(step)
         for i, each in enumerate(located):
-            if is_halved(each, step.before):
+            if has_halved_period(each, step.before):
                 return [*located[:i], replace(each, kind=Kind.HALVING)]
         return located
 
-    def go_on_from(self, point: OrbitPoint) -> OrbitPoint:
+    def move_stepper_to(self, point: OrbitPoint) -> OrbitPoint:
         """Set the stepper to an orbit, rescaling unknowns if its size has changed; return it."""
         family, root = point.family, point.root
-        nodes = root.unknowns[: family.size].reshape(-1, 4)
+        nodes = root.unknowns[: family.node_unknowns].reshape(-1, 4)
         scaled = Family.from_nodes(family.setting, family.sequence, nodes)
         low, high = 0.5, 2.0
         if len(nodes) and not low < scaled.scale[POSITION] / family.scale[POSITION] < high:
@@ -181,32 +187,32 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         """Return the step's last orbit, with impacts added or removed as chattering (17) needs."""
         # where permanent contact is lost or begins, infinitely many impacts would graze: an end
         after = step.after
-        if not after.wrong_contact:
+        if not after.violates_sticking_condition:
             return after, None
         try:
-            return fit_impacts(after), None
+            return fit_chattering_impacts(after), None
         except NoConvergenceError:  # too far on: go back to where the first impact comes or goes
             lost = after.contact_margin(Kind.CONTACT_LOST) <= -STICK_TOLERANCE
             kind = Kind.CONTACT_LOST if lost else Kind.CONTACT_BEGUN
             position, first = step.solve_for_level(kind, 0.0, step.length, -STICK_TOLERANCE)
         try:
-            changed = fit_impacts(add_or_drop_chattering_impacts(first))
+            changed = fit_chattering_impacts(add_or_drop_chattering_impacts(first))
         except NoConvergenceError:
             return first, kind
         self.stepper.length = max(position, 2.0 * self.stepper.min_length)
         step.at_limit = False
         return changed, None
 
-    def end_without_root(self, segment: BranchSegment[OrbitPoint]) -> None:
+    def set_end_without_root(self, segment: BranchSegment[OrbitPoint]) -> None:
         last = segment.points[-1]
-        if last.orbit.contact.any() and last.contact_margin(Kind.CONTACT_LOST) < 1e-6:
+        if last.orbit.in_contact.any() and last.contact_margin(Kind.CONTACT_LOST) < 1e-6:
             segment.add_bifurcation(Kind.CONTACT_LOST, last, 0.0)
             segment.end = KINDS[Kind.CONTACT_LOST]
         else:
             segment.end = NO_CONVERGENCE
 
 
-def is_halved(located: LocatedBifurcation[OrbitPoint], before: OrbitPoint) -> bool:
+def has_halved_period(located: LocatedBifurcation[OrbitPoint], before: OrbitPoint) -> bool:
     """Return whether an orbit has half the period at a fold, of several that had not before."""
     periods = before.orbit.sequence.periods
     if located.kind != Kind.FOLD or least_periods(before.orbit) < periods:
@@ -214,20 +220,21 @@ def is_halved(located: LocatedBifurcation[OrbitPoint], before: OrbitPoint) -> bo
     return least_periods(located.point.orbit, 1e-4) < periods
 
 
-def fit_impacts(point: OrbitPoint) -> OrbitPoint:
+def fit_chattering_impacts(point: OrbitPoint) -> OrbitPoint:
     """Add or remove chattering impacts one by one until (17) holds; return the orbit."""
     for _ in range(10):  # more are no small change of an orbit
-        if not point.wrong_contact:
+        if not point.violates_sticking_condition:
             return point
         point = add_or_drop_chattering_impacts(point)
     raise NoConvergenceError("impacts of a chattering come and go")
 
 
 def add_or_drop_chattering_impacts(point: OrbitPoint) -> OrbitPoint:
+    """Solve for the orbit with one impact more before contact, or with those after one dropped."""
     orbit, margins = point.orbit, point.sticking_margins
     kinds, nodes = list(orbit.sequence.kinds), orbit.nodes
     if point.contact_margin(Kind.CONTACT_BEGUN) < point.contact_margin(Kind.CONTACT_LOST):
-        impacts = ~(orbit.contact | orbit.sequence.releases)
+        impacts = ~(orbit.in_contact | orbit.sequence.releases)
         sticking = int(np.where(impacts, margins, np.inf).argmin())
         later = orbit.sequence.releases[sticking + 1 :]
         if not later.any():
@@ -237,10 +244,10 @@ def add_or_drop_chattering_impacts(point: OrbitPoint) -> OrbitPoint:
         kinds[sticking] = kind_at_same_end(kinds[sticking], STICK)
         kinds, nodes = [kinds[i] for i in kept], nodes[kept]
     else:
-        last = int(np.where(orbit.contact, margins, -np.inf).argmax())
+        last = int(np.where(orbit.in_contact, margins, -np.inf).argmax())
         impact = kind_at_same_end(kinds[last], IMPACT)
         kinds = [*kinds[:last], impact, *kinds[last:]]
-        nodes = np.insert(nodes, last + 1, estimated_next_impact(orbit, last), axis=0)
+        nodes = np.insert(nodes, last + 1, estimate_next_impact_node(orbit, last), axis=0)
     sequence = ImpactSequence(orbit.sequence.periods, tuple(kinds))
     guess, setting = (sequence, nodes), point.family.setting
     changed = OrbitPoint(
@@ -252,11 +259,13 @@ def add_or_drop_chattering_impacts(point: OrbitPoint) -> OrbitPoint:
     return changed if same_direction else changed.reversed()
 
 
-def estimated_next_impact(orbit: PeriodicOrbit, node: int) -> Floats:
+def estimate_next_impact_node(orbit: PeriodicOrbit, node: int) -> Floats:
+    """Return the node of the impact that would follow, did the impact of a node not stick."""
     phase, position, velocity, closing = orbit.nodes[node]
-    parting = orbit.form.parting(closing)
+    separation = orbit.form.separation_speed(closing)
     outer = bool(orbit.sequence.outer[node])
-    time = 2.0 * parting / -float(orbit.form.force(phase, position, velocity, outer))
+    time = 2.0 * separation / -float(orbit.form.contact_force(phase, position, velocity, outer))
     if not 0.0 < time < orbit.durations[node]:
         raise NoConvergenceError("no time is left for another impact")
-    return np.array([phase + orbit.form.eta * time, position + velocity * time, velocity, parting])
+    later = phase + orbit.form.eta * time
+    return np.array([later, position + velocity * time, velocity, separation])

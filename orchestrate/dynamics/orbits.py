@@ -32,14 +32,14 @@ from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS
-from .families import Setting, acting
+from .families import Setting, nonzero_pushes
 from .orbit_records import orbit_coordinates, orbit_row, orbit_table, orbit_variables
 from .orbit_search import (
     Guess,
     close_returns,
     first_possible_orbit,
     guess_from_phases,
-    guess_from_state,
+    simulate_guess,
     single_impact_guesses,
 )
 from .periodic_orbit import AT_OUTER_END, IMPACT, PHASE, RELEASE, ImpactSequence
@@ -57,7 +57,7 @@ class FirstGuess:
     # phase, position, velocity, closing speed of each; or only phases
     nodes: tuple[tuple[float, ...], ...] = ()
 
-    def as_argument(self, frequency: float) -> str:
+    def argument_text(self, frequency: float) -> str:
         """Return Python source of the ``guess=`` argument that repeats this guess."""
         if self.state:
             return f"{self.state!r}"
@@ -66,15 +66,15 @@ class FirstGuess:
         return f"{{'impact_time': {times!r}}}"
 
     def as_guess(self, periods: int) -> Guess:
-        """Return the guess's impacts and releases over some periods, with their nodes."""
+        """Return the nodes of all impacts and releases as what Newton's method begins with."""
         return ImpactSequence(periods, self.kinds), np.array(self.nodes).reshape(-1, 4)
 
 
-def call_from_start(job: Any, values: Floats, **keywords: Any) -> str:
+def call_text_from_start(job: Any, values: Floats, **keywords: Any) -> str:
     """Return Python source of a call that begins with an orbit, the orbit's call included."""
     setting = job.setting
-    guess = job.start.as_argument(setting.point(values).excitation.frequency)
-    start = setting.orbit_call(values, job.period, guess)
+    guess = job.start.argument_text(setting.point(values).excitation.frequency)
+    start = setting.orbit_call_text(values, job.period, guess)
     parts = [f"{name}={value!r}" for name, value in keywords.items()]
     return f"{job.asked}({', '.join([repr(job.structure), f'start={start}', *parts])})"
 
@@ -88,7 +88,7 @@ class SingleOrbitQuestion(questions.Question, ABC):
 
     @property
     def setting(self) -> Setting:
-        return Setting.fixed(self.structure, (*self.excitation, *acting(vars(self))))
+        return Setting.fixed(self.structure, (*self.excitation, *nonzero_pushes(vars(self))))
 
     @property
     def values(self) -> Floats:
@@ -109,12 +109,12 @@ class OrbitJob(SingleOrbitQuestion):
         if self.guess is None:
             parts += [f"{name}={getattr(self, name)}" for name in ("transient", "search", "tries")]
         else:
-            parts.append(f"guess={self.guess.as_argument(frequency)}")
+            parts.append(f"guess={self.guess.argument_text(frequency)}")
         return f"orbit({', '.join(parts)})"
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            return orbit_table([find_orbit(instance, self)])
+            return orbit_table([find_orbit_row(instance, self)])
 
     def dataset(self, table: Table) -> xr.Dataset:
         setting = self.setting
@@ -125,11 +125,14 @@ class OrbitJob(SingleOrbitQuestion):
         )
 
 
-def find_orbit(instance: EventInstance, job: OrbitJob) -> Table:
+def find_orbit_row(instance: EventInstance, job: OrbitJob) -> Table:
+    """Solve for the job's orbit and run it in the FMU; return the row of its numbers."""
     setting, values = job.setting, job.values
     try:
-        tried = orbit_guesses(instance, job, setting, values)
-        family, root = first_possible_orbit(setting, tried, values, stable=job.guess is None)
+        guesses = orbit_guesses(instance, job, setting, values)
+        family, root = first_possible_orbit(
+            setting, guesses, values, prefer_stable=job.guess is None
+        )
     except SOLVER_ERRORS as reason:
         expected = "another period, or a guess to orbit, whose result is a start for branch"
         expected = "another guess" if job.guess else expected
@@ -142,9 +145,10 @@ def find_orbit(instance: EventInstance, job: OrbitJob) -> Table:
 def orbit_guesses(
     instance: EventInstance, job: OrbitJob, setting: Setting, values: Floats
 ) -> Iterator[Guess]:
-    point, form, guess = setting.point(values), setting.form(values), job.guess
+    """Yield guesses by the user's one, or from close returns, then with a single impact."""
+    point, form, guess = setting.point(values), setting.closed_form(values), job.guess
     if guess is not None and guess.state:
-        yield guess_from_state(instance, point, form, np.array(guess.state), job.period)
+        yield simulate_guess(instance, point, form, np.array(guess.state), job.period)
     elif guess is not None:
         phases = np.array(guess.nodes)
         if phases.shape[1:] == (4,):
@@ -156,7 +160,7 @@ def orbit_guesses(
     else:
         returns = close_returns(instance, point, job.period, job.transient, job.search)
         for state, _ in islice(list(returns), job.tries):
-            yield guess_from_state(instance, point, form, state, job.period)
+            yield simulate_guess(instance, point, form, state, job.period)
         yield from single_impact_guesses(form, job.period)
 
 
@@ -183,21 +187,23 @@ def checked_guess(
 
 
 def guess_from_result(result: Mapping[Any, Any]) -> FirstGuess:
+    """Return the nodes of a result of ``orbit`` or of one point of a branch."""
     kinds = np.asarray(result["node_kind"])
     if kinds.ndim != 1:
         raise InputError("guess: several orbits; expected one (in Python branch.isel(point=0))")
-    there = kinds >= 0
-    columns = [np.asarray(result[name])[there] for name in NODE]
+    is_node = kinds >= 0
+    columns = [np.asarray(result[name])[is_node] for name in NODE]
     rows = tuple(tuple(map(float, row)) for row in np.stack(columns, axis=1))
-    return FirstGuess(kinds=tuple(map(int, kinds[there])), nodes=rows)
+    return FirstGuess(kinds=tuple(map(int, kinds[is_node])), nodes=rows)
 
 
 def excitation_arguments(
     eta: ArrayLike | None, frequency: ArrayLike | None, amplitude: ArrayLike | None
 ) -> tuple[tuple[str, float], ...]:
+    """Return those arguments that are not None as (name, number); raise unless numbers."""
     arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
-    given = ((name, value) for name, value in arguments.items() if value is not None)
-    return tuple((name, checked_number(name, value)) for name, value in given)
+    stated = ((name, value) for name, value in arguments.items() if value is not None)
+    return tuple((name, checked_number(name, value)) for name, value in stated)
 
 
 @question(OrbitJob)

@@ -31,8 +31,8 @@ from ..response.signatures import as_given, question
 from ..response.sweep import HOW_DECIDED
 from ..running.job import FAMILY, Chunk, Fmus, Table, to_json_data
 from ..running.options import RunOptions
-from .impacts_after_transient import follow_impacts
-from .lyapunov import SAYS, WORDS, classify_exponents, exponent_of, wander_floor
+from .impacts_after_transient import simulate_nondimensional_impacts
+from .lyapunov import SAYS, WORDS, classify_exponents, exponent_floors, largest_exponent
 from .settling import transient_periods
 
 FIELDS = {
@@ -88,7 +88,7 @@ class MapJob(questions.Question):
 
     def work(self, fmus: Fmus, items: Sequence[questions.Point], previous: Table | None) -> Table:
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
-            decided = zip(items, self.decided_responses(plain, items), strict=True)
+            decided = zip(items, self.run_until_decided(plain, items), strict=True)
             rows = [self.row(eventful, item, *each) for item, each in decided]
         return {"rows": np.array(rows, dtype=float)}
 
@@ -100,16 +100,17 @@ class MapJob(questions.Question):
         decision: Decision,
         rate: float,
     ) -> list[float]:
+        """Run on for impulses and the exponent; return the numbers of one point of the map."""
         n, decided = decision
-        impacts = follow_impacts(eventful, item, response.end, self.samples // 2)
+        impacts = simulate_nondimensional_impacts(eventful, item, response.end, self.samples // 2)
         impulse = impacts.impulse(item.structure, item.speed).max(initial=0.0) / item.structure.m1
         numbers = [rate, n, decided, response.x_rel_max / item.length, impulse]
         if self.exponent:
-            later = follow_impacts(eventful, item, response.end, self.periods)
-            numbers += exponent_of(later, self.periods, item)
+            later = simulate_nondimensional_impacts(eventful, item, response.end, self.periods)
+            numbers += largest_exponent(later, self.periods, item)
         return numbers
 
-    def decided_responses(
+    def run_until_decided(
         self, instance: Instance, items: Sequence[questions.Point]
     ) -> list[DecidedResponse]:
         """Run points on until their multiplicity is decided; return responses, impacts a period."""
@@ -120,8 +121,8 @@ class MapJob(questions.Question):
         left = np.arange(len(items))
         while len(left):
             points = [items[i] for i in left.tolist()]
-            own: Any = {"samples": self.samples, "tolerance": self.tolerance, "decides": True}
-            settings = LoopSettings(transient=dropped[left].tolist(), **own)
+            rule: Any = {"samples": self.samples, "tolerance": self.tolerance, "decides": True}
+            settings = LoopSettings(transient=dropped[left].tolist(), **rule)
             results = loop.respond(points, ends[left], settings)
             done[left] += dropped[left] + self.samples
             responses = responses_from(results, points, self.tolerance)
@@ -143,7 +144,7 @@ class MapJob(questions.Question):
         if self.exponent:
             etas = (point.excitation.eta(point.structure) for point in self.points)
             exponent, error = table["rows"].T[-len(EXPONENT) :]
-            verdicts = classify_exponents(exponent, error, wander_floor(etas, self.periods))
+            verdicts = classify_exponents(exponent, error, exponent_floors(etas, self.periods))
             variables["verdict"] = flags(names, verdicts.reshape(shape[1:]), SAYS, WORDS)
         coordinates = {
             name: parameter_variable(name, name, values) for name, values in axes.items()
@@ -156,6 +157,7 @@ class MapJob(questions.Question):
 def map_points(
     structure: Structure, arguments: tuple[tuple[str, Numbers], ...]
 ) -> tuple[questions.Point, ...]:
+    """Return all combinations of the two arguments that are lists, the second one fastest."""
     values = dict(arguments)
     questions.check_excitation_form(values.keys())
     lists = {name: value for name, value in arguments if isinstance(value, tuple)}
@@ -255,11 +257,11 @@ def map(
     [[9.0, 30.0], [2.0, 2.0]]
     """
     running = {name: value for name, value in others.items() if name not in PARAMETERS}
-    known = [field.name for field in fields(RunOptions)]
+    options = [field.name for field in fields(RunOptions)]
     for name in running:
-        if name not in known:
+        if name not in options:
             raise InputError(
-                f"{name}: no parameter; {expected_one_of(name, (*PARAMETERS, *known))}"
+                f"{name}: no parameter; {expected_one_of(name, (*PARAMETERS, *options))}"
             )
     if (over is None) != (values is None) or over in others:
         raise InputError("over and values: expected both or none, and over= not by its name too")
@@ -267,9 +269,9 @@ def map(
     box = {"eta": eta, "frequency": frequency, "amplitude": amplitude, "level": level}
     pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
     pushed = {name: value for name, value in pushes.items() if not np.array_equal(value, 0.0)}
-    asked: dict[str, Any] = {**box, **pushed, **others}
+    every: dict[str, Any] = {**box, **pushed, **others}
     numbers = {
-        n: questions.excitation_numbers(n, value) for n, value in asked.items() if n not in running
+        n: questions.excitation_numbers(n, value) for n, value in every.items() if n not in running
     }
     given = tuple((name, value) for name, value in numbers.items() if value is not None)
     start = questions.checked_state("start", start, questions.checked_structure(structure))

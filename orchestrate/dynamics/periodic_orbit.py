@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import TURN
-from .closed_form import FREE, INNER, OUTER, ClosedForm, Floats, parting_sign
+from .closed_form import FREE, INNER, OUTER, ClosedForm, Floats, separating_sign
 
 IMPACT, STICK, RELEASE = range(3)  # kinds of nodes; after STICK follows permanent contact
 AT_OUTER_END = 3  # added to the kind of a node at the outer end of a stroke
@@ -58,6 +58,7 @@ class ImpactSequence:
         return len(self.kinds) - int(self.releases.sum())
 
     def doubled(self) -> ImpactSequence:
+        """Return the sequence twice, over twice the periods."""
         return ImpactSequence(2 * self.periods, self.kinds * 2)
 
     def without(self, node: int) -> ImpactSequence:
@@ -87,69 +88,71 @@ class PeriodicOrbit:
     nodes: Floats  # phase in rad, displacement of mass 1, velocity of the centre, closing speed
 
     @property
-    def count(self) -> int:
+    def node_count(self) -> int:
         return len(self.nodes)
 
     @cached_property
-    def begins(self) -> Floats:
+    def begin_phases(self) -> Floats:
         """Return the phases, rad, at which segments between nodes begin (0 without nodes)."""
-        return self.nodes[:, PHASE] if self.count else np.zeros(1)
+        return self.nodes[:, PHASE] if self.node_count else np.zeros(1)
 
     @cached_property
-    def ends(self) -> Floats:
-        phases = next_rows(self.begins)
+    def end_phases(self) -> Floats:
+        phases = next_rows(self.begin_phases)
         phases[-1] += TURN * self.sequence.periods
         return phases
 
     @cached_property
     def durations(self) -> Floats:
         """Return the durations of the segments between nodes, in units of tau."""
-        return (self.ends - self.begins) / self.form.eta
+        return (self.end_phases - self.begin_phases) / self.form.eta
 
     @property
     def modes(self) -> NDArray[np.int_]:
         """Return the mode of each segment: in flight, or in permanent contact at either end."""
-        return self.sequence.modes if self.count else np.array([self.form.rest_mode])
+        return self.sequence.modes if self.node_count else np.array([self.form.rest_mode])
 
     @cached_property
-    def contact(self) -> NDArray[np.bool_]:
+    def in_contact(self) -> NDArray[np.bool_]:
         return self.modes != FREE
 
     @cached_property
-    def segments(self) -> tuple[Floats, ...]:
+    def segment_arrays(self) -> tuple[Floats, ...]:
         """Return segments' residuals (k, 4), derivatives by both nodes (k, 4, 4), end states."""
         columns = *self.nodes.T, self.modes, self.sequence.releases, self.sequence.outer
         span = TURN * self.sequence.periods
-        rows = self.form.tabulate("find_segments", columns, 44, span).reshape(11, -1, 4)
+        rows = self.form.call_kernel("find_segments", columns, 44, span).reshape(11, -1, 4)
         before, after = (rows[i : i + 4].reshape(-1, 4, 4) for i in (1, 5))
         return rows[0], before, after, rows[9], rows[10]
 
     @property
-    def starts(self) -> Floats:
+    def start_states(self) -> Floats:
         """Return the states at the begin of segments, just after impacts (15), shape (k, 4)."""
-        if not self.count:
+        if not self.node_count:
             return self.form.steady_response(np.zeros(1), self.modes)
-        return self.segments[3]
+        return self.segment_arrays[3]
 
     @property
-    def arrivals(self) -> Floats:
+    def end_states(self) -> Floats:
         """Return the states at the end of segments, just before the next node, shape (k, 4)."""
-        return self.segments[4] if self.count else self.starts
+        return self.segment_arrays[4] if self.node_count else self.start_states
 
-    def motion(self, segment: NDArray[np.int_], phase: Floats) -> tuple[Floats, Floats]:
+    def states_and_rates(self, segment: NDArray[np.int_], phase: Floats) -> tuple[Floats, Floats]:
         """Return the states at phases inside given segments, and their rates, both (n, 4)."""
-        begins, modes, starts = self.begins[segment], self.modes[segment], self.starts[segment]
-        numbers = self.form.tabulate("find_motion", (begins, modes, phase, *starts.T), 8)
+        begins, starts = self.begin_phases[segment], self.start_states[segment]
+        columns = begins, self.modes[segment], phase, *starts.T
+        numbers = self.form.call_kernel("find_motion", columns, 8)
         return numbers[:, :4], numbers[:, 4:]
 
     def states(self, segment: NDArray[np.int_], phase: Floats) -> Floats:
-        return self.motion(segment, phase)[0]
+        """Return the states at phases inside given segments, (n, 4)."""
+        return self.states_and_rates(segment, phase)[0]
 
     @property
-    def reductions(self) -> Floats:
+    def reduction_matrices(self) -> Floats:
         """Return matrices from states before nodes to gap, centre (x, v) and closing speed."""
-        sign = parting_sign(next_rows(self.sequence.outer))[:, None]
-        matrices = np.zeros((self.count, 4, 4))
+        sign = separating_sign(next_rows(self.sequence.outer))[:, None]
+        matrices = np.zeros((self.node_count, 4, 4))
         matrices[:, 0, :2] = [-1.0, 1.0]
         matrices[:, [1, 2], [0, 2]] = self.form.shares[0]
         matrices[:, [1, 2], [1, 3]] = self.form.shares[1]
@@ -157,12 +160,12 @@ class PeriodicOrbit:
         return matrices
 
     def residual(self) -> Floats:
-        return self.segments[0].ravel() if self.count else np.zeros(0)
+        return self.segment_arrays[0].ravel() if self.node_count else np.zeros(0)
 
     def jacobian(self, multiplier: complex = 1.0) -> NDArray[np.inexact]:
-        """Return the Jacobian of the residual by all nodes' unknowns, shape (4 k, 4 k)."""
-        _, before, after, *_ = self.segments
-        k = self.count
+        """Return the residual's Jacobian by all nodes, (4 k, 4 k); singular at a multiplier."""
+        _, before, after, *_ = self.segment_arrays
+        k = self.node_count
         matrix = np.zeros((k, 4, k, 4), dtype=complex if isinstance(multiplier, complex) else float)
         for i in range(k):
             matrix[i, :, i] += before[i]
@@ -171,10 +174,10 @@ class PeriodicOrbit:
 
     def monodromy(self) -> Floats:
         """Return the monodromy matrix (4, 4): a deviation at the first node over one period."""
-        if not self.count:
-            flow = self.form.flow(self.durations, self.modes)[0]
-            return flow @ self.form.centre() if self.contact[0] else flow
-        _, before, after, *_ = self.segments
+        if not self.node_count:
+            flow = self.form.flow_matrices(self.durations, self.modes)[0]
+            return flow @ self.form.centre_matrix() if self.in_contact[0] else flow
+        _, before, after, *_ = self.segment_arrays
         product = np.eye(4)
         for step in -np.linalg.solve(after, before):
             product = step @ product
@@ -186,7 +189,7 @@ class PeriodicOrbit:
             values = np.linalg.eigvals(self.monodromy()).astype(complex)
         except np.linalg.LinAlgError:
             return np.full(4, complex(np.inf))
-        if self.contact.any():
+        if self.in_contact.any():
             values[np.argsort(np.abs(values))[:2]] = 0.0
         return values[np.lexsort((values.imag, values.real.round(12), -np.abs(values).round(12)))]
 
@@ -199,7 +202,7 @@ class PeriodicOrbit:
         """Return the multipliers' product by Liouville's formula, as an independent check."""
         lost = float(self.form.damping[0] + self.form.damping[1])
         time = TURN * self.sequence.periods / self.form.eta
-        if self.contact.any() or self.form.wall:
+        if self.in_contact.any() or self.form.wall:
             return 0.0
         slower = np.prod((1.0 + self.form.e_slope * self.nodes[:, CLOSING]) ** -3)
-        return float(self.form.e ** (2 * self.count) * slower * np.exp(-2.0 * lost * time))
+        return float(self.form.e ** (2 * self.node_count) * slower * np.exp(-2.0 * lost * time))

@@ -21,7 +21,7 @@ from ..response.simulate import IN_TIME
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
 from .impacts_after_transient import FollowedResponse, state_after_transient
-from .variational import deviations, nondimensional_impacts
+from .variational import deviation_matrices_and_contacts, nondimensional_impacts
 
 COLUMNS = ("x1", "x2", "v1", "v2", "x_rel", "v_rel")
 SECTIONS = {  # what a section is, by its name
@@ -47,13 +47,13 @@ class PoincareJob(OneMotionQuestion):
                 times = self.phase / self.excitation.frequency + period * np.arange(
                     float(self.periods)
                 )
-                return {"time": times, "rows": states_at_times(plain, point, start, times)}
+                return {"time": times, "rows": simulate_to_times(plain, point, start, times)}
             with EventInstance(fmus[OSCILLATOR]) as eventful:
                 begin(eventful, *point, start)
                 impacts = eventful.impacts(0.0, self.periods * period)
             if self.at == "releases":
                 times = release_times(impacts, point, self.periods * period)
-                return {"time": times, "rows": states_at_times(plain, point, start, times)}
+                return {"time": times, "rows": simulate_to_times(plain, point, start, times)}
         rate = np.where(impacts.sticks, 0.0, impacts.state[:, 3] - impacts.state[:, 2])
         gap, stroke = gap_between(impacts.state, point.structure.gap_offset), self.structure.stroke
         gap = np.where(gap > 0.5 * stroke, stroke, 0.0)  # 0 without a stroke
@@ -82,8 +82,8 @@ class PoincareJob(OneMotionQuestion):
         return make_dataset(variables, coordinates, title)
 
 
-def states_at_times(instance: Instance, point: Point, start: ArrayLike, times: Floats) -> Floats:
-    """Simulate from phase 0; return displacements, velocities and gap at given times (n, 6)."""
+def simulate_to_times(instance: Instance, point: Point, start: ArrayLike, times: Floats) -> Floats:
+    """Simulate from phase 0; return displacements, velocities and gap at times in s, (n, 6)."""
     begin(instance, *point, start)
     rows, now = np.empty((len(times), len(COLUMNS))), 0.0
     for row, time in zip(rows, times.tolist(), strict=True):
@@ -98,7 +98,7 @@ def release_times(impacts: Impacts, point: Point, end: float) -> Floats:
     omega = point.structure.omega
     scaled = nondimensional_impacts(impacts, point)
     ends = np.append(scaled.time[1:], omega * end)
-    _, lasting = deviations(scaled, omega * end, point)
+    _, lasting = deviation_matrices_and_contacts(scaled, omega * end, point)
     released = scaled.sticks & (lasting < ends - scaled.time)
     times: Floats = (scaled.time + lasting)[released] / omega
     return times

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 import numpy as np
 
 from .bifurcation_kinds import KINDS, Kind
-from .continuation import SOLVER_ERRORS, AnyCurve, ArclengthStepper, Root, solve_between
+from .continuation import SOLVER_ERRORS, AnyCurve, ArclengthStepper, Root, solve_by_brent
 
 LIMIT, NO_CONVERGENCE, MAX_POINTS = "limit", "no convergence", "most points"  # ends of branches
 ACCURACY = 1e-14  # of a position along the branch, in unknowns over their scale
@@ -71,11 +71,11 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
     # -- what a subclass supplies ------------------------------------------------------------------
 
     @abstractmethod
-    def point(self, root: Root) -> Point:
+    def make_point(self, root: Root) -> Point:
         """Return the branch point of a solved root; subclasses define what a point is."""
 
     @abstractmethod
-    def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
+    def limited_unknowns(self) -> tuple[int, Sequence[tuple[float, float]]]:
         """Return the index of the first limited unknown, and (low, high) from it onwards."""
 
     def accepts(self, root: Root) -> bool:
@@ -93,7 +93,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
     def location_tolerances(self, length: float) -> dict[str, float]:
         return {"xtol": ACCURACY, "rtol": ACCURACY}
 
-    def end_before(self, step: BranchStep[Point]) -> tuple[str, Iterable[Point]]:
+    def end_within_step(self, step: BranchStep[Point]) -> tuple[str, Iterable[Point]]:
         """Return why the branch ends within a step (empty if not), and its last points."""
         return "", ()
 
@@ -101,44 +101,45 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         """Return the point that a step appends, and the bifurcation there if it ends the branch."""
         return step.after, None
 
-    def end_without_root(self, segment: BranchSegment[Point]) -> None:
+    def set_end_without_root(self, segment: BranchSegment[Point]) -> None:
         """Set the reason why a segment ends where no step converges, however short."""
         segment.end = NO_CONVERGENCE
 
     @abstractmethod
-    def go_on_from(self, point: Point) -> Point:
-        """Set the stepper to a point for the next step; return the point, perhaps rescaled."""
+    def move_stepper_to(self, point: Point) -> Point:
+        """Set the stepper to a point for the next step; return it, or the same motion restarted."""
 
     # -- the loop ----------------------------------------------------------------------------------
 
     def trace(self, start: Point) -> BranchSegment[Point]:
+        """Follow the branch from a point on, in the direction of its tangent, to its end."""
         segment, rates = BranchSegment([start]), dict.fromkeys(self.kinds, np.inf)
         try:
             while not segment.end:
                 if len(segment.points) > self.max_points:
                     segment.end = MAX_POINTS
                     break
-                before = self.go_on_from(segment.points[-1])
-                step, located = self.next_step(before, rates)
+                before = self.move_stepper_to(segment.points[-1])
+                step, located = self.take_step(before, rates)
                 rates = {kind: step.mean_slope(kind) for kind in self.kinds}
-                self.add_step(segment, step, located)
+                self.append_step(segment, step, located)
         except SOLVER_ERRORS:
-            self.end_without_root(segment)
+            self.set_end_without_root(segment)
         return segment
 
-    def next_step(
+    def take_step(
         self, before: Point, rates: Mapping[Kind, float]
     ) -> tuple[BranchStep[Point], list[LocatedBifurcation[Point]]]:
         """Take a step, shortened until all in it can be solved for; return its bifurcations too."""
         stepper = self.stepper
         while True:
-            root, length, at_limit = stepper.step_within(*self.limits(), self.accepts)
+            root, length, at_limit = stepper.step_within(*self.limited_unknowns(), self.accepts)
             try:
-                step = BranchStep(self, before, self.point(root), length, at_limit, rates)
-                step.end, step.last_points = self.end_before(step)
+                step = BranchStep(self, before, self.make_point(root), length, at_limit, rates)
+                step.end, step.last_points = self.end_within_step(step)
                 if step.end:
                     return step, []
-                located = self.locate(step)
+                located = self.locate_bifurcations(step)
                 if not (located and located[-1].kind in self.ending_kinds):
                     last, kind = self.fit_impacts_to_step(step)
                     step.end, step.last_points = LIMIT if step.at_limit else "", [last]
@@ -150,17 +151,17 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
                 if stepper.length < stepper.min_length:
                     raise
 
-    def locate(self, step: BranchStep[Point]) -> list[LocatedBifurcation[Point]]:
+    def locate_bifurcations(self, step: BranchStep[Point]) -> list[LocatedBifurcation[Point]]:
         """Locate all bifurcations in a step, in order, up to the first that ends the branch."""
         tested = [kind for kind in self.kinds if kind in self.ending_kinds]
-        ends = self.locate_kinds(step, tested)[:1]
+        ends = self.locate_bifurcations_of(step, tested)[:1]
         if ends:
             length = ends[0].position * (1.0 - 1e-6)  # where the other test functions are defined
             step = replace(step, after=step.point(length), length=length)
         others = [kind for kind in self.kinds if kind not in self.ending_kinds]
-        return [*self.locate_kinds(step, others), *ends]
+        return [*self.locate_bifurcations_of(step, others), *ends]
 
-    def locate_kinds(
+    def locate_bifurcations_of(
         self, step: BranchStep[Point], kinds: Sequence[Kind]
     ) -> list[LocatedBifurcation[Point]]:
         """Locate the confirmed bifurcations of given kinds in a step; return them in order."""
@@ -176,7 +177,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         ]
         return sorted(confirmed, key=lambda each: each.position)
 
-    def add_step(
+    def append_step(
         self,
         segment: BranchSegment[Point],
         step: BranchStep[Point],
@@ -220,13 +221,14 @@ class BranchStep(Generic[Point]):
     last_points: Iterable[Point] = ()  # to add to the branch
 
     def __post_init__(self) -> None:
-        self.known = {0.0: self.before, self.length: self.after}
+        self.solved = {0.0: self.before, self.length: self.after}
 
     def point(self, position: float) -> Point:
-        if position not in self.known:
+        """Return the branch's point at an arclength into the step, solved for once."""
+        if position not in self.solved:
             tracer = self.tracer
-            self.known[position] = tracer.point(tracer.stepper.root_after(position))
-        return self.known[position]
+            self.solved[position] = tracer.make_point(tracer.stepper.root_after(position))
+        return self.solved[position]
 
     def test_function(self, position: float, kind: Kind) -> float:
         """Return a kind's test function at an arclength into the step; 1 where not finite."""
@@ -263,7 +265,7 @@ class BranchStep(Generic[Point]):
         if self.length <= ACCURACY or not abs(value) < reach:
             return False
         sign = np.sign(value)
-        falls, rises = (sign * self.slope(end, kind) for end in (0.0, self.length))
+        falls, rises = (sign * self.end_slope(end, kind) for end in (0.0, self.length))
         return bool(falls < 0.0 < rises)
 
     def mean_slope(self, kind: Kind) -> float:
@@ -274,8 +276,8 @@ class BranchStep(Generic[Point]):
         change = after - before
         return change / self.length if np.isfinite(change) and self.length else np.inf
 
-    def slope(self, position: float, kind: Kind) -> float:
-        """Return a test function's slope at either end of the step; 0 where not computable."""
+    def end_slope(self, position: float, kind: Kind) -> float:
+        """Return a test function's slope at the step's begin or end; 0 where not computable."""
         near = position + (1e-3 if position == 0.0 else -1e-3) * self.length
         value = self.tracer.test_function
         try:
@@ -287,9 +289,9 @@ class BranchStep(Generic[Point]):
     def solve_for_level(
         self, kind: Kind, low: float, high: float, level: float = 0.0
     ) -> tuple[float, Point]:
-        """Solve by Brent's method for where a test has a level; return position, point."""
-        within = self.tracer.location_tolerances(self.length)
-        position = solve_between(
-            lambda at: self.test_function(at, kind) - level, low, high, **within
+        """Solve by Brent's method for where a test function has a level; return position, point."""
+        tolerances = self.tracer.location_tolerances(self.length)
+        position = solve_by_brent(
+            lambda at: self.test_function(at, kind) - level, low, high, **tolerances
         )
         return position, self.point(position)

@@ -31,14 +31,16 @@ class TurningPoints:
 def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
     """Return segment indices and phases of a fine sampling grid along an orbit."""
     counts = 8 + np.ceil(  # of the fastest oscillation 24: extrema lie further apart
-        24 * np.abs(orbit.durations) * orbit.form.fastest / TURN
+        24 * np.abs(orbit.durations) * orbit.form.highest_frequency / TURN
     ).astype(int)
     segment = np.repeat(np.arange(len(counts)), counts)
     number_in_segment = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
     part = (number_in_segment + 0.5) / counts[segment]
-    if not orbit.count:  # a segment that closes: once around, and to the first sample again
+    if not orbit.node_count:  # a segment that closes: once around, and to the first sample again
         segment, part = np.append(segment, 0), np.append(part, part[0] + 1.0)
-    return segment, orbit.begins[segment] + part * (orbit.ends - orbit.begins)[segment]
+    return segment, orbit.begin_phases[segment] + part * (orbit.end_phases - orbit.begin_phases)[
+        segment
+    ]
 
 
 def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
@@ -46,9 +48,9 @@ def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
     segment, phase = sample_grid(orbit)
     rates = orbit.states(segment, phase)[:, 2:] @ WEIGHTS.T
     same = segment[1:] == segment[:-1]
-    turned = (np.sign(rates[1:]) != np.sign(rates[:-1])) & same[:, None]
-    turned[:, GAP] &= ~orbit.contact[segment[1:]]
-    which, quantity = np.nonzero(turned)
+    turns = (np.sign(rates[1:]) != np.sign(rates[:-1])) & same[:, None]
+    turns[:, GAP] &= ~orbit.in_contact[segment[1:]]
+    which, quantity = np.nonzero(turns)
     low, high, segment = phase[which], phase[which + 1], segment[which]
     first, last = rates[which, quantity], rates[which + 1, quantity]
     phases = low + (high - low) * first / (first - last)
@@ -79,7 +81,7 @@ def quantity_derivatives(
     orbit: PeriodicOrbit, segment: NDArray[np.int_], quantity: NDArray[np.int_], phase: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Return first and second tau derivatives, and values, of displacements or the gap."""
-    state, field = orbit.motion(segment, phase)
+    state, field = orbit.states_and_rates(segment, phase)
     weights = WEIGHTS[quantity]
     rate, curvature = (weights * field[:, :2]).sum(axis=1), (weights * field[:, 2:]).sum(axis=1)
     return rate, curvature, (weights * state[:, :2]).sum(axis=1)
@@ -96,10 +98,10 @@ class Amplitudes:
 
     @classmethod
     def from_orbit(cls, orbit: PeriodicOrbit, turns: TurningPoints) -> Amplitudes:
-        places = np.array([0.0, orbit.form.gap_offset, 0.0])  # of unloaded springs, and no gap
-        ends = np.abs(orbit.arrivals[:, :2] - places[:2]).max(axis=0)
+        origins = np.array([0.0, orbit.form.gap_offset, 0.0])  # of unloaded springs, and no gap
+        ends = np.abs(orbit.end_states[:, :2] - origins[:2]).max(axis=0)
         inside = [
-            np.abs(turns.value[turns.quantity == which] - places[which]) for which in range(3)
+            np.abs(turns.value[turns.quantity == which] - origins[which]) for which in range(3)
         ]
         largest = [max(values, default=0.0) for values in inside]
         reaches = orbit.sequence.outer.any() or (orbit.modes == OUTER).any()
@@ -120,55 +122,60 @@ def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int
 
 def weakest_force(orbit: PeriodicOrbit) -> tuple[float, int, float]:
     """Return the smallest minimum of the contact pressure -f, with its segment and phase."""
-    if not orbit.contact.any():
+    if not orbit.in_contact.any():
         return np.inf, -1, 0.0
     segment, phase = sample_grid(orbit)
-    inside = orbit.contact[segment]
+    inside = orbit.in_contact[segment]
     segment, phase = segment[inside], phase[inside]
-    rate = pressing_force(orbit, segment, phase)[1]
-    turned = (rate[1:] > 0.0) & (rate[:-1] <= 0.0) & (segment[1:] == segment[:-1])
-    if not turned.any():
+    rate = contact_pressure_and_derivatives(orbit, segment, phase)[1]
+    turns = (rate[1:] > 0.0) & (rate[:-1] <= 0.0) & (segment[1:] == segment[:-1])
+    if not turns.any():
         return np.inf, -1, 0.0
-    low, high, segment = phase[:-1][turned], phase[1:][turned], segment[1:][turned]
+    low, high, segment = phase[:-1][turns], phase[1:][turns], segment[1:][turns]
 
     def rate_and_slope(phase: Floats) -> tuple[Floats, Floats]:
-        return pressing_force(orbit, segment, phase)[1:]
+        return contact_pressure_and_derivatives(orbit, segment, phase)[1:]
 
     phases = refine_zeros(rate_and_slope, 0.5 * (low + high), (low, high), orbit.form.eta)
-    forces = pressing_force(orbit, segment, phases)[0]
+    forces = contact_pressure_and_derivatives(orbit, segment, phases)[0]
     lowest = forces.argmin()
     return float(forces[lowest]), int(segment[lowest]), float(phases[lowest])
 
 
-def pressing_force(
+def contact_pressure_and_derivatives(
     orbit: PeriodicOrbit, segment: NDArray[np.int_], phase: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Return the contact pressure -f (18) and its first two tau derivatives, at phases."""
-    form, modes, (state, rates) = orbit.form, orbit.modes[segment], orbit.motion(segment, phase)
+    form, modes, (state, rates) = (
+        orbit.form,
+        orbit.modes[segment],
+        orbit.states_and_rates(segment, phase),
+    )
     outer = modes == OUTER
     position, velocity = state[:, 0], state[:, 2]
     acceleration = rates[:, 2]
     jerk = form.drive[2] * form.eta * np.cos(phase) - 2.0 * form.damping[2] * acceleration
     jerk -= form.stiffness[2] * velocity
-    first = form.force_rate(velocity, acceleration, outer)
-    first = first + form.eta * form.gap_drive(phase + 0.5 * np.pi, outer)
-    second = form.force_rate(acceleration, jerk, outer) - form.eta**2 * form.gap_drive(phase, outer)
-    return -form.force(phase, position, velocity, outer), -first, -second
+    first = form.motion_part_of_force(velocity, acceleration, outer)
+    first = first + form.eta * form.harmonic_part_of_force(phase + 0.5 * np.pi, outer)
+    second = form.motion_part_of_force(
+        acceleration, jerk, outer
+    ) - form.eta**2 * form.harmonic_part_of_force(phase, outer)
+    return -form.contact_force(phase, position, velocity, outer), -first, -second
 
 
 def stroboscopic_states(orbit: PeriodicOrbit, phase: float = 0.0) -> Floats:
     """Return an orbit's states at one phase in successive periods, shape (periods, 4)."""
-    periods, begin = orbit.sequence.periods, orbit.begins[0]
+    periods, begin = orbit.sequence.periods, orbit.begin_phases[0]
     wanted = phase + TURN * np.arange(periods)
     shifted = begin + np.mod(wanted - begin, TURN * periods)
-    segment = np.searchsorted(orbit.begins, shifted, side="right") - 1
+    segment = np.searchsorted(orbit.begin_phases, shifted, side="right") - 1
     return orbit.states(segment, shifted)
 
 
 def rotate_to_phase_zero(nodes: Floats, periods: int) -> tuple[Floats, int]:
     """Reorder nodes to begin at phase 0; return them, and the old index of the first one."""
-    turn = TURN * periods
-    phase = np.mod(nodes[:, PHASE], turn)
+    phase = np.mod(nodes[:, PHASE], TURN * periods)
     first = int(phase.argmin()) if len(nodes) else 0
     ordered = np.roll(nodes, -first, axis=0)
     if len(nodes):

@@ -22,6 +22,7 @@ from .closed_form import ClosedForm, Floats
 
 @functools.cache
 def exponent_library() -> Any:
+    """Return the compiled loop of deviations and exponents, with the types of its functions."""
     loaded, table = loaded_loop("exponent"), [c_void_p, c_size_t]
     loaded.exponent_size.argtypes, loaded.exponent_size.restype = [c_size_t], c_size_t
     span = [c_void_p, *table, c_double]
@@ -36,7 +37,7 @@ def exponent_library() -> Any:
     return loaded
 
 
-class Call(NamedTuple):
+class LibraryArguments(NamedTuple):
     """Addresses of what the library takes of impacts, and the arrays that have to stay."""
 
     span: tuple[Any, ...]  # structure and excitation, impacts, how many, their end
@@ -44,8 +45,8 @@ class Call(NamedTuple):
     kept: tuple[Any, ...]
 
 
-def call_of(impacts: Impacts, end: float, point: Point) -> Call:
-    """Return a call about non-dimensional impacts up to an end in tau."""
+def library_arguments(impacts: Impacts, end: float, point: Point) -> LibraryArguments:
+    """Return a call's arguments about non-dimensional impacts up to an end in tau."""
     structure, excitation = point
     values = [float(getattr(structure, name)) for name in DEVIATING]
     box = excitation.amplitude, excitation.frequency
@@ -54,9 +55,8 @@ def call_of(impacts: Impacts, end: float, point: Point) -> Call:
     columns = impacts.time / omega, states, impacts.closing * point.speed, impacts.sticks
     rows, count = np.column_stack(columns).astype(float), len(impacts.time)
     memory = np.empty(exponent_library().exponent_size(count))
-    return Call(
-        (numbers.ctypes.data, rows.ctypes.data, count, end / omega), memory, (numbers, rows)
-    )
+    span = numbers.ctypes.data, rows.ctypes.data, count, end / omega
+    return LibraryArguments(span, memory, (numbers, rows))
 
 
 def period_in_tau(eta: float) -> float:
@@ -64,12 +64,15 @@ def period_in_tau(eta: float) -> float:
     return 2.0 * math.pi / eta
 
 
-def deviations(impacts: Impacts, end: float, point: Point) -> tuple[Floats, Floats]:
+def deviation_matrices_and_contacts(
+    impacts: Impacts, end: float, point: Point
+) -> tuple[Floats, Floats]:
     """Return matrices (n, 4, 4) from before an impact to before the next; contacts in tau."""
-    call, count = call_of(impacts, end, point), len(impacts.time)
-    first = exponent_library().find_deviations(*call.span, call.memory.ctypes.data)
+    arguments, count = library_arguments(impacts, end, point), len(impacts.time)
+    memory = arguments.memory
+    first = exponent_library().find_deviations(*arguments.span, memory.ctypes.data)
     last = first + 16 * count
-    return call.memory[first:last].reshape(count, 4, 4), call.memory[last : last + count]
+    return memory[first:last].reshape(count, 4, 4), memory[last : last + count]
 
 
 def contact_durations(form: ClosedForm, phase: Floats, states: Floats, spans: Floats) -> Floats:
@@ -85,8 +88,9 @@ def contact_durations(form: ClosedForm, phase: Floats, states: Floats, spans: Fl
     from_unloaded = states - [0.0, form.gap_offset, 0.0, 0.0]
     columns = phase / eta, from_unloaded, 0.0 * phase, 1.0 + 0.0 * phase
     for i, row in enumerate(np.column_stack(columns)):
-        given = numbers.ctypes.data, row.ctypes.data, 1, row[0] + 1.5 * spans[i]
-        durations[i] = memory[exponent_library().find_deviations(*given, memory.ctypes.data) + 16]
+        arguments = numbers.ctypes.data, row.ctypes.data, 1, row[0] + 1.5 * spans[i]
+        matrix = exponent_library().find_deviations(*arguments, memory.ctypes.data)
+        durations[i] = memory[matrix + 16]
     return np.where(durations <= spans, durations, np.inf)
 
 

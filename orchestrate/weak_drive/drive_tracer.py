@@ -157,13 +157,13 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         )
         super().__init__(stepper, settings.max_points)
 
-    def point(self, root: continuation.Root) -> Motion:
+    def make_point(self, root: continuation.Root) -> Motion:
         return observe_motion(self.shooter, root, self.stepper.root.tangent)
 
-    def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
+    def limited_unknowns(self) -> tuple[int, Sequence[tuple[float, float]]]:
         return self.shooter.size + 1, [self.speeds]
 
-    def go_on_from(self, point: Motion) -> Motion:
+    def move_stepper_to(self, point: Motion) -> Motion:
         """Set the stepper to a motion, begun far from impacts, for the next step; return it."""
         motion = begin_far_from_impacts(self.shooter, point)
         self.stepper.root, self.stepper.jacobian = motion.root, motion.matrix
@@ -190,12 +190,12 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
     def location_tolerances(self, length: float) -> dict[str, float]:
         return {"xtol": 1e-6 * length}
 
-    def end_before(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
+    def end_within_step(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
         # beyond, the same motions come again, half a period later
         change = state_change_over_half_period(self.shooter, step.after.root)
         return (HALVED if self.half_change @ change < 0.0 else ""), ()
 
-    def end_without_root(self, segment: BranchSegment[Motion]) -> None:
+    def set_end_without_root(self, segment: BranchSegment[Motion]) -> None:
         """Set why a leg ends where Newton's method fails; thin out its points next to a grazing."""
         # had a late motion a contact phase, it is that which is lost
         if any(motion.period.sticks for motion in segment.points[-12:]):

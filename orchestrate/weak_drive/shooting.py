@@ -14,7 +14,7 @@ import numpy as np
 
 from ..constants import TURN
 from ..dynamics.closed_form import Floats
-from ..dynamics.continuation import NoConvergenceError, fix_sign
+from ..dynamics.continuation import NoConvergenceError, with_positive_leading_component
 from ..errors import FmuError
 from ..fmu.instance import Instance
 from ..model.drive import Drive
@@ -321,7 +321,7 @@ class Shooter:
         """Return the unit eigenvector of the multiplier -1 (period doubling)."""
         values, vectors = np.linalg.eig(self.return_map_derivative())
         direction = vectors[:, np.argmin(np.abs(values + 1.0))].real
-        return fix_sign(np.asarray(direction / np.linalg.norm(direction)))
+        return with_positive_leading_component(np.asarray(direction / np.linalg.norm(direction)))
 
 
 Ends = Callable[[float], "Floats | None"]  # of a period, by a change of an unknown

@@ -82,8 +82,8 @@ def test_a_fold_is_found_from_either_side_of_it(monkeypatch, beyond):
     question = {"over": ("frequency", "e"), "limits": [(1.2, 1.4), (0.6, 0.8)]}
     job = border(FOLDED, start=start, bifurcation=at, **question)
     job = replace(job, values=(value + beyond, 0.7))
-    curve, root = borders.start_root(job)
-    assert root.unknowns[curve.first_parameter :] == pytest.approx([value, 0.7], abs=1e-11)
+    curve, root = borders.solve_start_on_curve(job)
+    assert root.unknowns[curve.first_parameter_index :] == pytest.approx([value, 0.7], abs=1e-11)
 
 
 DAMPED = Structure(d1=0.1, d2=0.12, e=0.5)

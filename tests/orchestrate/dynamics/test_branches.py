@@ -208,6 +208,6 @@ def test_what_pushes_at_the_start_is_kept(monkeypatch):
     assert dict(given.setting.excitation) == {"force1": 0.02}
     along = branch(PAPER, start=start, over="box_acceleration", limits=(0.0, 0.1))
     assert along.value == 0.05 and dict(along.setting.excitation)["force1"] == 0.02
-    monkeypatch.setattr(manifolds.ManifoldJob, "saddle", lambda job: None)
+    monkeypatch.setattr(manifolds.ManifoldJob, "solve_saddle", lambda job: None)
     kept = manifolds.manifold(PAPER, start=start)
     assert {name: getattr(kept, name) for name in pushes} == pushes

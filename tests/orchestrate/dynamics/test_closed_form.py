@@ -54,8 +54,8 @@ def test_python_and_c_have_equal_bits(seed):
             rows = np.column_stack(
                 [orbit.nodes, orbit.modes, orbit.sequence.releases, orbit.sequence.outer]
             )
-        result = orbit.form.tabulate(name, list(rows.T), width, 12.0)
-        head = [*orbit.form.numbers.tolist(), float(len(rows)), 12.0]
+        result = orbit.form.call_kernel(name, list(rows.T), width, 12.0)
+        head = [*orbit.form.kernel_numbers.tolist(), float(len(rows)), 12.0]
         memory = [*head, *rows.ravel().tolist(), *[0.0] * (width * len(rows) + orbits.SPARE)]
         entry(memory, 0.0)
         first = orbits.TABLE + rows.size
@@ -86,7 +86,7 @@ def test_the_flow_of_one_oscillator_is_a_matrix_exponential(damping):
         own = dataclasses.replace(form, damping=damping * four, stiffness=four**2)
         rates = np.array([[0.0, 1.0], [-square, -2.0 * damping * four[0]]])
         expected = expm(rates * time) if time < 1e3 else np.zeros((2, 2))
-        found = own.flow(np.atleast_1d(time))[0, ::2, ::2]
+        found = own.flow_matrices(np.atleast_1d(time))[0, ::2, ::2]
         assert found == pytest.approx(expected, abs=1e-9) or (
             time > 1e3 and np.isfinite(found).all()
         )

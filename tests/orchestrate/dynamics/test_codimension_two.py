@@ -10,7 +10,11 @@ import orchestrate
 from orchestrate import Structure
 from orchestrate.dynamics import codimension_two
 from orchestrate.dynamics.bifurcation_kinds import Kind
-from orchestrate.dynamics.codimension_two import CharacteristicPolynomial, PointKind, points_between
+from orchestrate.dynamics.codimension_two import (
+    CharacteristicPolynomial,
+    PointKind,
+    locate_points_between,
+)
 from orchestrate.dynamics.continuation import newton_correct, unit_vector
 from orchestrate.flags import flag_words
 
@@ -77,17 +81,17 @@ class Normal:
     kind, accuracy, scale = Kind.FOLD, 1e-12, np.ones(3)
 
     def __init__(self):
-        self.family = SimpleNamespace(size=1, jacobian=self.first, setting=None)
+        self.family = SimpleNamespace(node_unknowns=1, jacobian=self.first, setting=None)
         self.columns = self.rows = np.ones(1)
 
-    def update_border(self, unknowns):
+    def update_bordering_vectors(self, unknowns):
         pass
 
     def first(self, unknowns):
         x, _, p2 = unknowns
         return np.array([[p2 - 3.0 * x * x, 1.0, x]])
 
-    def matrix(self, unknowns):
+    def scaled_orbit_jacobian(self, unknowns):
         return self.first(unknowns)[:, :1].astype(complex)
 
     def residual(self, unknowns):
@@ -113,7 +117,7 @@ def between(curve, first, last):
     for x in (first, last):
         guess = np.array([x, -2.0 * x**3, 3.0 * x * x])
         roots.append(newton_correct(curve, guess, unit_vector(3, 0)))
-    return {each.kind: each for each in points_between(curve, *roots, 0.0)}
+    return {each.kind: each for each in locate_points_between(curve, *roots, 0.0)}
 
 
 @pytest.mark.parametrize("first", [-0.05, -0.15])

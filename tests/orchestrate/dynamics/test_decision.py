@@ -288,7 +288,7 @@ def test_a_guess_begins_in_the_middle_of_the_longest_pause(monkeypatch, times, b
     """Of a period of 6, also across its end."""
     decider, spans = Scripted(), []
     decider.point = Point(PAPER, Excitation(frequency=TURN / 6.0, amplitude=1.0))
-    decider.system = SimpleNamespace(form=lambda values: None)
+    decider.system = SimpleNamespace(closed_form=lambda values: None)
     found = SimpleNamespace(time=np.array(times))
     decider.eventful = SimpleNamespace(impacts=lambda *span: spans.append(span) or found)
     monkeypatch.setattr(decision, "begin", lambda *asked: None)

@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate.dynamics.impacts_after_transient import follow_impacts
+from orchestrate.dynamics.impacts_after_transient import simulate_nondimensional_impacts
 from orchestrate.dynamics.lyapunov import (
     CHAOTIC,
     NEUTRAL,
     PERIODIC,
     classify_exponents,
-    largest_exponent,
+    exponent_from_impacts,
     lyapunov,
     min_impacts,
 )
 from orchestrate.dynamics.lyapunov_spectrum import kaplan_yorke_dimension, lyapunov_spectrum
-from orchestrate.dynamics.variational import deviations, period_in_tau
+from orchestrate.dynamics.variational import deviation_matrices_and_contacts, period_in_tau
 from orchestrate.errors import InputError
 from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, find
 from orchestrate.model import Excitation, Structure
@@ -54,8 +54,8 @@ def test_it_agrees_with_two_neighbours_of_the_fmu(instances, eta, pushes, expect
     plain, eventful = instances
     point, periods = Point(PAPER, Excitation.nondimensional(eta, PAPER, **pushes)), 400
     start, span = settled(plain, point, 3000), period_in_tau(eta)
-    impacts = follow_impacts(eventful, point, start, periods)
-    exponent, error = largest_exponent(impacts, periods * span, point)
+    impacts = simulate_nondimensional_impacts(eventful, point, start, periods)
+    exponent, error = exponent_from_impacts(impacts, periods * span, point)
     here, growth = start, 0.0
     shift = 1e-8 * np.array([0.5, -0.5, 0.5, 0.5]) * np.abs(start).max()
     scale = np.linalg.norm(shift)
@@ -154,10 +154,12 @@ def test_their_sum_is_the_mean_divergence(exported, structure, eta):
 def test_a_qr_method_gives_the_same(instances):
     """Benettin's method, one impact after the other, in chaotic motion."""
     point, end = Point(PAPER, Excitation.nondimensional(0.8, PAPER)), 600 * period_in_tau(0.8)
-    impacts = follow_impacts(instances[1], point, settled(instances[0], point, 300), 600)
+    impacts = simulate_nondimensional_impacts(
+        instances[1], point, settled(instances[0], point, 300), 600
+    )
     found = lyapunov_spectrum(impacts, end, point, 40, 8)
     frame, sums = np.eye(4), np.zeros(4)
-    for matrix in deviations(impacts, end, point)[0]:
+    for matrix in deviation_matrices_and_contacts(impacts, end, point)[0]:
         frame, upper = np.linalg.qr(matrix @ frame)
         sums += np.log(np.abs(np.diag(upper)))
     np.testing.assert_allclose(found.exponents, sums / end, atol=4e-3)

@@ -114,7 +114,7 @@ def test_a_break_is_no_root_and_more_than_rounding(distance, power, size, broken
     settings = GROWER.settings if size == 1.0 else replace(GROWER.settings, size=size)
     grower, here = CurveGrower(None, settings), CurvePoint(0.0, np.zeros(2), ())
     curve = GrownCurve([here], [0.0])
-    grower.cross_change(curve, ItineraryChange(here, here, distance, power))
+    grower.append_beyond_change(curve, ItineraryChange(here, here, distance, power))
     assert (list(curve.breaks), curve.arclength) == ([1] * broken, [0.0, distance * (not broken)])
     grower.direction = np.array([1.0, 0.0])
     up = CurvePoint(0.0, np.array([0.0, distance]), ())
@@ -230,7 +230,7 @@ def curve(**more):
 
 def test_its_direction_is_the_eigenvector_at_phase_0():
     """Of flight, saltation and flight, as single impacts have them."""
-    saddle, hit = manifolds.ManifoldJob(**job_fields()).saddle(), SingleImpact(3.0, 1)
+    saddle, hit = manifolds.ManifoldJob(**job_fields()).solve_saddle(), SingleImpact(3.0, 1)
     drive = hit.b * math.sin(hit.phase)
     incoming = hit.a @ hit.state + drive
     jump = hit.a @ hit.restitution @ hit.state + drive - hit.restitution @ incoming
@@ -244,7 +244,7 @@ def test_its_direction_is_the_eigenvector_at_phase_0():
 def test_images_of_its_points_lie_on_it():
     """By the FMU, two periods: on the points of numbers greater by 1, to 1e-8."""
     job = manifolds.ManifoldJob(**job_fields())
-    saddle, sides = job.saddle(), {}
+    saddle, sides = job.solve_saddle(), {}
     with Instance(exported_path()) as instance:
         data = curve()
         part = data.sel(side="-")
@@ -255,7 +255,7 @@ def test_images_of_its_points_lie_on_it():
             instance.step(0.0, 2.0 * box.excitation.period)
             image = np.array(instance.get("x1", "x2", "v1", "v2"))
             s = float(part.iterate[i]) + 1.0
-            sides[i] = np.abs(image - job.point_function(instance, saddle, -1.0)(s).state).max()
+            sides[i] = np.abs(image - job.make_point_function(instance, saddle, -1.0)(s).state).max()
     assert len(sides) > 5 and max(sides.values()) < 1e-8
 
 

@@ -28,16 +28,16 @@ class CircleTracer(BranchTracer):
         self.start = Root(np.array(point), np.array(tangent), 0.0, 0)
         super().__init__(ArclengthStepper(Circle(), self.start, 0.1, 0.2), 100)
 
-    def point(self, root):
+    def make_point(self, root):
         return root
 
-    def limits(self):
+    def limited_unknowns(self):
         return 0, [(-2.0, 2.0)]
 
     def test_function(self, point, kind):
         return float(point.tangent[0])
 
-    def go_on_from(self, point):
+    def move_stepper_to(self, point):
         self.stepper.root = point
         return point
 
@@ -45,7 +45,7 @@ class CircleTracer(BranchTracer):
 def test_a_step_is_shortened_where_a_bifurcation_cannot_be_located():
     """It is not passed over in silence."""
     tracer = CircleTracer()
-    located, lengths = tracer.locate, []
+    located, lengths = tracer.locate_bifurcations, []
 
     def fail_in_long_steps(step):
         lengths.append(step.length)
@@ -53,16 +53,16 @@ def test_a_step_is_shortened_where_a_bifurcation_cannot_be_located():
             raise NoConvergenceError("too long")
         return located(step)
 
-    tracer.locate = fail_in_long_steps
+    tracer.locate_bifurcations = fail_in_long_steps
     segment = tracer.trace(tracer.start)
     assert segment.bifurcations[0].point.unknowns == pytest.approx([1.0, 0.0], abs=1e-12)
     assert min(lengths) <= 0.01
     tracer = CircleTracer()
-    tracer.locate = lambda step: (_ for _ in ()).throw(NoConvergenceError("never"))
+    tracer.locate_bifurcations = lambda step: (_ for _ in ()).throw(NoConvergenceError("never"))
     assert tracer.trace(tracer.start).end == NO_CONVERGENCE
 
 
-@pytest.mark.parametrize("method", ["fit_impacts_to_step", "go_on_from", "point"])
+@pytest.mark.parametrize("method", ["fit_impacts_to_step", "move_stepper_to", "make_point"])
 @pytest.mark.parametrize("error", [NoConvergenceError, np.linalg.LinAlgError])
 def test_what_was_followed_is_kept_where_an_inner_iteration_fails(method, error):
     """Whatever part of a step it belongs to."""

@@ -6,8 +6,12 @@ import numpy as np
 import pytest
 
 from orchestrate.dynamics.closed_form import INNER, ClosedForm
-from orchestrate.dynamics.impacts_after_transient import follow_impacts
-from orchestrate.dynamics.variational import contact_durations, deviations, period_in_tau
+from orchestrate.dynamics.impacts_after_transient import simulate_nondimensional_impacts
+from orchestrate.dynamics.variational import (
+    contact_durations,
+    deviation_matrices_and_contacts,
+    period_in_tau,
+)
 from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, find
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
@@ -69,8 +73,8 @@ def monodromy(impacts, point, periods=1):
     form = ClosedForm.from_structure(*point)
     end = periods * period_in_tau(form.eta)
     first = impacts.time[0] if len(impacts.time) else end
-    matrix = form.flow(np.array([first]))[0]
-    for each in deviations(impacts, end, point)[0]:
+    matrix = form.flow_matrices(np.array([first]))[0]
+    for each in deviation_matrices_and_contacts(impacts, end, point)[0]:
         matrix = each @ matrix
     return matrix
 
@@ -99,7 +103,7 @@ def test_monodromy_equals_differences_of_the_fmu(instances, structure, eta, push
     gap = start[1] - start[0] + structure.gap_offset
     if min(gap, (structure.stroke or np.inf) - gap) < 1e-3 * np.abs(start).max():
         start = point.scale * [-0.05, 0.05, 1.0, -1.0]  # in contact there is no neighbour beyond
-    impacts = follow_impacts(eventful, point, start, 2)
+    impacts = simulate_nondimensional_impacts(eventful, point, start, 2)
     assert len(impacts.time)
     expected = differences(plain, point, start, 2)
     found = monodromy(impacts, point, 2)
@@ -118,7 +122,7 @@ def test_short_openings_are_seen_wherever_a_contact_begins(above):
     )
     phases = np.linspace(0.0, 2.0 * np.pi, 400_001)
     x, _, v, _ = form.steady_response(phases, INNER).T
-    opened = phases[form.force(phases, x, v) >= 0.0]
+    opened = phases[form.contact_force(phases, x, v) >= 0.0]
     assert 0.0 < np.ptp(opened) < 2.0 * np.pi / 64.0
     begins = np.linspace(0.0, 2.0 * np.pi, 2000)
     begins = begins[(begins < opened[0]) | (begins > opened[-1])]

@@ -9,8 +9,8 @@ from fmu_src.kernels import repetition
 from orchestrate.dynamics.continuation import NoConvergenceError
 from orchestrate.dynamics.families import Setting
 from orchestrate.dynamics.orbit_search import (
-    guess_from_state,
     least_periods,
+    simulate_guess,
     solve_orbit,
     why_no_motion,
 )
@@ -302,7 +302,9 @@ def denied_by_newton(instance, point, state, periods):
     setting = Setting(point.structure, numbers, ("frequency",), limits)
     values = np.array([excitation.frequency])
     try:
-        guess = guess_from_state(instance, point, setting.form(values), np.array(state), periods)
+        guess = simulate_guess(
+            instance, point, setting.closed_form(values), np.array(state), periods
+        )
         family, root = solve_orbit(setting, guess, values)
     except NoConvergenceError:
         return True
