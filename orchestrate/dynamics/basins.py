@@ -129,7 +129,7 @@ class BasinJob(questions.Question):
             raise InputError(
                 "x and y: mass 2 is a wall; expected of x1 and x_rel, v1 and v_rel one"
             )
-        if questions.outside_gap(states, self.structure).all():
+        if questions.is_outside_gap(states, self.structure).all():
             raise InputError(
                 "x and y: the masses overlap at every start; expected some with x2 >= x1"
             )
@@ -155,7 +155,7 @@ class BasinJob(questions.Question):
             decider = MotionDecider(*instances, point, self.settings)
             rows = [ABSENT_ROW] * len(items)
             states = np.array([state for state, _ in items])
-            possible = np.flatnonzero(~questions.outside_gap(states, self.structure)).tolist()
+            possible = np.flatnonzero(~questions.is_outside_gap(states, self.structure)).tolist()
             starts = [run_to_phase_zero(decider.plain, point, *items[i]) for i in possible]
             for i, row in zip(possible, settle_starts(decider, starts), strict=True):
                 rows[i] = row
@@ -368,5 +368,5 @@ def find_attractors_from_few_starts(
             begin(instance, *point, state)
             periods = int(n) or settings.irregular_samples
             samples.append(stroboscopic_samples(instance, excitation.period, 0, periods)[0].copy())
-    gap = float(known.xi_rel_max.max()) * point.length or point.length
+    gap = float(known.xi_rel_max.max()) * point.displacement_unit or point.displacement_unit
     return KnownAttractors(states, np.concatenate(samples), gap, excitation.frequency)

@@ -17,7 +17,12 @@ from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Number, checked_integer, checked_number, checked_pair
 from ..model.ranges import OF_LENGTH, PUSHES
-from ..response.questions import OF_EXCITATION, Question, excitation_numbers, require_delaminated
+from ..response.questions import (
+    OF_EXCITATION,
+    Question,
+    checked_excitation_numbers,
+    require_delaminated,
+)
 from ..response.signatures import as_given, question
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
@@ -273,7 +278,7 @@ def pushes_at_start(start: xr.Dataset | None, **arguments: float | None) -> dict
 def checked_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
     expected = "two numbers, the lower one first"
     pair = checked_pair("limits", limits, expected)
-    excitation_numbers(over, pair)
+    checked_excitation_numbers(over, pair)
     if not pair[0] < pair[1]:
         raise InputError(f"limits = {limits!r}: expected {expected}")
     if over == "amplitude" and pair[0] == 0.0:

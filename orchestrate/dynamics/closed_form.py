@@ -4,7 +4,7 @@ All in the paper's units: displacements over a eta^2, time as tau, the excitatio
 A state is (xi_1, xi_2, xi_1', xi_2'). Oscillators 1 and 2 are the masses, 3 is both as one, 4 both
 at the outer end of a stroke. With a clearance, xi_2 counts from where mass 2 touches mass 1 at
 xi_1 = 0: the gap is xi_2 - xi_1 always, and the clearance is a constant load of the springs, see
-:meth:`.Point.faces`. A wall is a mass 2 that nothing moves.
+:meth:`.Point.faces_from_states`. A wall is a mass 2 that nothing moves.
 """
 
 from __future__ import annotations

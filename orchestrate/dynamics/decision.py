@@ -28,7 +28,7 @@ from ..errors import FmuError, InputError
 from ..fmu import STATE, EventInstance, Instance, begin, stroboscopic_samples
 from ..model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from ..response.questions import Point
-from ..response.respond import Response, respond
+from ..response.respond import Response, simulate_response
 from .continuation import SOLVER_ERRORS
 from .families import Setting, nonzero_pushes
 from .orbit_search import Guess, guess_from_impacts, least_periods, solve_orbit, why_no_motion
@@ -93,7 +93,9 @@ class MotionDecider:
                 motion = self.motion_without_orbit(response, near_unstable)
                 return ReachedMotion(motion, np.array(response.end), settled.periods)
             lengths = dropped, settings.samples
-            response = respond(self.plain, *self.point, response.end, *lengths, settings.converged)
+            response = simulate_response(
+                self.plain, *self.point, response.end, *lengths, settings.converged
+            )
             done += sum(lengths)
 
     def find_periodic_motion(self, response: Response) -> tuple[SettledMotion | None, bool]:

@@ -83,7 +83,7 @@ class AttractorsAtValue:
         if known is None:
             begin(decider.plain, *decider.point, state)
             states, _ = stroboscopic_samples(decider.plain, decider.point.excitation.period, 0, n)
-            gap = float(features[2]) * decider.point.length
+            gap = float(features[2]) * decider.point.displacement_unit
             known = SettledMotion(decider.point, decided, states.copy(), n, float(features[1]), gap)
             decider.known.append(known)
         return known
@@ -91,7 +91,7 @@ class AttractorsAtValue:
     def median_irregular_motion(self, rows: Floats, state: Floats, decided: int) -> SettledMotion:
         """Return an irregular motion with the medians of rows of features; its state is given."""
         _, impacts, gap = np.median(rows[:, :3], axis=0)
-        length = self.decider.point.length
+        length = self.decider.point.displacement_unit
         return SettledMotion(
             self.decider.point, decided, state[np.newaxis], 0, float(impacts), gap * length
         )
@@ -110,7 +110,9 @@ class AttractorsAtValue:
 
     def continue_from_neighbour(self, motion: SettledMotion) -> tuple[int, int]:
         """Continue a neighbour's attractor here; return its index here, and how."""
-        state = self.decider.point.from_faces(motion.point.faces(motion.states[0]))
+        state = self.decider.point.states_from_faces(
+            motion.point.faces_from_states(motion.states[0])
+        )
         reached = self.decider.decide(state).motion
         if motion.orbit is not None and may_be_different_branches(
             motion, reached, self.decider.settings.neighbour
@@ -129,7 +131,7 @@ def may_be_different_branches(motion: SettledMotion, other: SettledMotion, dista
     counts = motion.multiplicity, motion.impacts_per_period
     if counts != (other.multiplicity, other.impacts_per_period):
         return True
-    state = other.point.from_faces(motion.point.faces(motion.states[0]))
+    state = other.point.states_from_faces(motion.point.faces_from_states(motion.states[0]))
     return other.nearest_state(state)[1] > distance
 
 

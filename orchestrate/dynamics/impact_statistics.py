@@ -88,7 +88,7 @@ def contact_time(impacts: Impacts, item: FollowedResponse, end: float) -> float:
     if first:
         impacts = Impacts(
             np.append(0.0, impacts.time),
-            np.vstack([item.point.faces(np.asarray(item.start)), impacts.state]),
+            np.vstack([item.point.faces_from_states(np.asarray(item.start)), impacts.state]),
             np.append(0.0, impacts.closing),
             np.append(True, impacts.sticks),
         )

@@ -178,11 +178,11 @@ class ManifoldJob(SingleOrbitQuestion):
         time = saddle.periods_per_return * point.excitation.period
 
         def run(faces: Floats, returns: int) -> tuple[Floats, Floats]:
-            begin(instance, *point, point.from_faces(faces.copy()))
+            begin(instance, *point, point.states_from_faces(faces.copy()))
             if returns:
                 instance.step(0.0, returns * time)
             values = np.array(instance.get("x1", "x2", "v1", "v2", *COUNTS), dtype=float)
-            return point.faces(values[:4]), values[4:]
+            return point.faces_from_states(values[:4]), values[4:]
 
         orbit_counts = run(saddle.state, 1)[1]  # what happens on the orbit itself is no change
 
@@ -230,20 +230,24 @@ def curves_table(curves: Sequence[curve_growth.GrownCurve], saddle: Saddle) -> T
 def curve_variables(table: Table, point: Any) -> dict[str, Any]:
     faces, along = table["rows"][..., :4], ("side", "point")
     xi, gap = faces.copy(), faces[..., 1] - faces[..., 0]
-    xi[..., 1] -= point.structure.gap_offset / point.length
+    xi[..., 1] -= point.structure.gap_offset / point.displacement_unit
     text = "states at phase 0: x1, x2 in m, v1, v2 in m/s; NaN where the curve is broken"
-    rate = point.speed * (faces[..., 3] - faces[..., 2])
+    rate = point.velocity_unit * (faces[..., 3] - faces[..., 2])
     saddle = table["saddle"][0]
     count = "excitation periods over those of a return, from the first piece on"
     return {
-        "state": variable((*along, "coordinate"), point.from_faces(faces.copy()), "SI", text),
+        "state": variable(
+            (*along, "coordinate"), point.states_from_faces(faces.copy()), "SI", text
+        ),
         "xi": variable((*along, "coordinate"), xi, "1", "states at phase 0 (3)"),
-        "x_rel": variable(along, point.length * gap, "m", "gap at phase 0"),
+        "x_rel": variable(along, point.displacement_unit * gap, "m", "gap at phase 0"),
         "v_rel": variable(along, rate, "m/s", "its rate"),
         "arclength": variable(along, table["rows"][..., 4], "1", "from the saddle, in xi (3)"),
         "iterate": variable(along, table["rows"][..., 5], "1", count),
         "end": flags("side", table["ends"], "why the curve ends", ENDS),
-        "saddle": variable("coordinate", point.from_faces(saddle.copy()), "SI", "the orbit itself"),
+        "saddle": variable(
+            "coordinate", point.states_from_faces(saddle.copy()), "SI", "the orbit itself"
+        ),
         "multiplier": variable((), table["multiplier"][0], "1", "the one outside the circle"),
         "orbit_size": variable(
             (), table["size"][0], "1", "largest displacement or velocity in xi (3)"

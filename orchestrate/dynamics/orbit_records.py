@@ -232,8 +232,8 @@ def branch_dataset(
 def state_columns(zero: Floats, points: Sequence[Point]) -> dict[str, Floats]:
     """Return the orbits' stroboscopic states at phase 0, SI and xi, and their gap."""
     xi = zero.copy()
-    xi[:, :, 1] -= np.array([[p.structure.gap_offset / p.length] for p in points])
-    state = [point.from_faces(faces) for point, faces in zip(points, zero, strict=True)]
+    xi[:, :, 1] -= np.array([[p.structure.gap_offset / p.displacement_unit] for p in points])
+    state = [point.states_from_faces(faces) for point, faces in zip(points, zero, strict=True)]
     return {"state": np.array(state), "xi": xi, "xi_rel": zero[:, :, 1] - zero[:, :, 0]}
 
 
@@ -241,7 +241,11 @@ def impact_columns(
     table: Table, points: Sequence[Point], frequency: Floats, rests_closed: NDArray[np.bool_]
 ) -> dict[str, NDArray[Any]]:
     """Return the orbits' impacts: times, speeds, rate; NaN for releases."""
-    nodes, kinds, speed = table["nodes"], table["kinds"], np.array([[p.speed] for p in points])
+    nodes, kinds, speed = (
+        table["nodes"],
+        table["kinds"],
+        np.array([[p.velocity_unit] for p in points]),
+    )
     released = (kinds >= 0) & (kinds % AT_OUTER_END == RELEASE)
     is_impact = (kinds >= 0) & ~released
     return {

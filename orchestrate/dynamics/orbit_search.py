@@ -45,11 +45,11 @@ def simulate_guess(
 
 def guess_from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int) -> Guess:
     """Return an orbit guess (sequence, nodes) from recorded impacts; add the releases between."""
-    state = point.faces(impacts.state)
+    state = point.faces_from_states(impacts.state)
     phase = point.excitation.frequency * impacts.time
     velocity = state[:, 2:] @ form.shares
     ends = AT_OUTER_END * (2.0 * (state[:, 1] - state[:, 0]) > form.limit)
-    nodes = np.stack([phase, state[:, 0], velocity, impacts.closing / point.speed], axis=1)
+    nodes = np.stack([phase, state[:, 0], velocity, impacts.closing / point.velocity_unit], axis=1)
     following = np.append(phase[1:], phase[:1] + TURN * periods)
     kinds: list[int] = []
     rows: list[Floats] = []
@@ -170,10 +170,10 @@ def compare_with_fmu(
     """
     point = setting.point(values)
     state = stroboscopic_states(orbit)[0]
-    begin(instance, *point, point.from_faces(state))
+    begin(instance, *point, point.states_from_faces(state))
     end = orbit.sequence.periods * point.excitation.period
     observed = instance.impacts(0.0, end)
-    after = point.faces(instance.read("x1", "x2", "v1", "v2"))
+    after = point.faces_from_states(instance.read("x1", "x2", "v1", "v2"))
     away = float(np.abs(after - state).max())
     nodes, first = rotate_to_phase_zero(orbit.nodes, orbit.sequence.periods)
     kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)
@@ -183,7 +183,7 @@ def compare_with_fmu(
     if len(phases) != len(expected):
         # of the motion's speed the square root of a gap's rounding is 1e-8
         grazing = 1e-6 * float(np.abs(orbit.end_states[:, 2:]).max())
-        is_observed = observed.closing / point.speed > grazing
+        is_observed = observed.closing / point.velocity_unit > grazing
         is_expected = expected[:, CLOSING] > grazing
         phases, sticks = phases[is_observed], sticks[is_observed]
         expected, kinds = expected[is_expected], kinds[is_expected]

@@ -103,8 +103,10 @@ class MapJob(questions.Question):
         """Run on for impulses and the exponent; return the numbers of one point of the map."""
         n, decided = decision
         impacts = simulate_nondimensional_impacts(eventful, item, response.end, self.samples // 2)
-        impulse = impacts.impulse(item.structure, item.speed).max(initial=0.0) / item.structure.m1
-        numbers = [rate, n, decided, response.x_rel_max / item.length, impulse]
+        impulse = (
+            impacts.impulse(item.structure, item.velocity_unit).max(initial=0.0) / item.structure.m1
+        )
+        numbers = [rate, n, decided, response.x_rel_max / item.displacement_unit, impulse]
         if self.exponent:
             later = simulate_nondimensional_impacts(eventful, item, response.end, self.periods)
             numbers += largest_exponent(later, self.periods, item)
@@ -123,7 +125,7 @@ class MapJob(questions.Question):
             points = [items[i] for i in left.tolist()]
             rule: Any = {"samples": self.samples, "tolerance": self.tolerance, "decides": True}
             settings = LoopSettings(transient=dropped[left].tolist(), **rule)
-            results = loop.respond(points, ends[left], settings)
+            results = loop.simulate(points, ends[left], settings)
             done[left] += dropped[left] + self.samples
             responses = responses_from(results, points, self.tolerance)
             for i, row in zip(left.tolist(), decisions_from(results, responses), strict=True):
@@ -159,7 +161,7 @@ def map_points(
 ) -> tuple[questions.Point, ...]:
     """Return all combinations of the two arguments that are lists, the second one fastest."""
     values = dict(arguments)
-    questions.check_excitation_form(values.keys())
+    questions.require_complete_excitation(values.keys())
     lists = {name: value for name, value in arguments if isinstance(value, tuple)}
     if len(lists) != 2:
         names = ", ".join(lists) or "none"
@@ -271,7 +273,9 @@ def map(
     pushed = {name: value for name, value in pushes.items() if not np.array_equal(value, 0.0)}
     every: dict[str, Any] = {**box, **pushed, **others}
     numbers = {
-        n: questions.excitation_numbers(n, value) for n, value in every.items() if n not in running
+        n: questions.checked_excitation_numbers(n, value)
+        for n, value in every.items()
+        if n not in running
     }
     given = tuple((name, value) for name, value in numbers.items() if value is not None)
     start = questions.checked_state("start", start, questions.checked_structure(structure))

@@ -41,14 +41,14 @@ class SettledMotion:
     def from_orbit(cls, point: Point, orbit: PeriodicOrbit, free_phase: float) -> SettledMotion:
         periods, faces = orbit.sequence.periods, stroboscopic_states(orbit)
         faces[:, 1] = np.maximum(faces[:, 0], faces[:, 1])  # in contact, within rounding
-        states = point.from_faces(faces)
+        states = point.states_from_faces(faces)
         return cls(
             point=point,
             decided=ORBIT,
             states=states,
             multiplicity=periods,
             impacts_per_period=orbit.sequence.impacts / periods,
-            gap=Amplitudes.from_orbit(orbit, turning_points(orbit)).gap * point.length,
+            gap=Amplitudes.from_orbit(orbit, turning_points(orbit)).gap * point.displacement_unit,
             multiplier=float(np.abs(orbit.multipliers()).max(initial=0.0)),
             orbit=orbit,
             free_phase=free_phase,
@@ -67,9 +67,11 @@ class SettledMotion:
     @cached_property
     def features(self) -> list[float]:
         """Return features that do not depend on the phase: period, impacts, gap statistics."""
-        gaps = gap_between(self.states, self.point.structure.gap_offset) / self.point.length
+        gaps = (
+            gap_between(self.states, self.point.structure.gap_offset) / self.point.displacement_unit
+        )
         means = [float(gaps.mean()), float(gaps.std())]
-        gap = self.gap / self.point.length
+        gap = self.gap / self.point.displacement_unit
         return [self.multiplicity, self.impacts_per_period, gap, *means]
 
     def nearest_state(self, state: ArrayLike) -> tuple[int, float]:
@@ -85,7 +87,7 @@ class SettledMotion:
     @cached_property
     def states_at_free_phase(self) -> Floats:
         assert self.orbit is not None, "no orbit"
-        return self.point.from_faces(stroboscopic_states(self.orbit, self.free_phase))
+        return self.point.states_from_faces(stroboscopic_states(self.orbit, self.free_phase))
 
     def is_same_orbit_as(self, other: SettledMotion, within: float) -> bool:
         """Return whether both motions are the same orbit: same nodes, or states that are close."""

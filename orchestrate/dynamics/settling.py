@@ -135,7 +135,7 @@ def run_until_settled(
     before, deviation = np.zeros(len(ends), dtype=int), np.full(len(ends), np.inf)
     while len(left):
         own = rule(transient=dropped, tolerance=converged, loose=loose)
-        results = loop.respond([point] * len(left), ends, own)
+        results = loop.simulate([point] * len(left), ends, own)
         done += dropped + settings.samples
         counts = results.counts
         n, nearly, reached = counts["multiplicity"], counts["nearly"], counts["reached"]
@@ -148,7 +148,7 @@ def run_until_settled(
         dying &= done >= settings.longest
         for chosen, tolerance in ((repeats, converged), (dying & ~repeats, loose)):
             rows = np.flatnonzero(chosen)
-            add_settled(left[rows], results.rows(rows), tolerance, nearly[rows].tolist())
+            add_settled(left[rows], results.select(rows), tolerance, nearly[rows].tolist())
         rest = np.flatnonzero(~(repeats | dying) & (reached == 0))
         left, ends = left[rest], results.ends[rest]
         before, deviation = nearly[rest], results.deviations[rest]
@@ -158,5 +158,5 @@ def run_until_settled(
     if len(left):
         done += settings.irregular_samples
         own = LoopSettings(transient=0, samples=settings.irregular_samples)
-        add_settled(left, loop.respond([point] * len(left), ends, own), converged)
+        add_settled(left, loop.simulate([point] * len(left), ends, own), converged)
     return [settled[i] for i in range(len(settled))]

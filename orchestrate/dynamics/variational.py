@@ -51,8 +51,8 @@ def library_arguments(impacts: Impacts, end: float, point: Point) -> LibraryArgu
     values = [float(getattr(structure, name)) for name in DEVIATING]
     box = excitation.amplitude, excitation.frequency
     numbers = np.array([*values, *box, *excitation.pushes])
-    states, omega = point.from_faces(impacts.state), structure.omega
-    columns = impacts.time / omega, states, impacts.closing * point.speed, impacts.sticks
+    states, omega = point.states_from_faces(impacts.state), structure.omega
+    columns = impacts.time / omega, states, impacts.closing * point.velocity_unit, impacts.sticks
     rows, count = np.column_stack(columns).astype(float), len(impacts.time)
     memory = np.empty(exponent_library().exponent_size(count))
     span = numbers.ctypes.data, rows.ctypes.data, count, end / omega
@@ -96,5 +96,5 @@ def contact_durations(form: ClosedForm, phase: Floats, states: Floats, spans: Fl
 
 def nondimensional_impacts(impacts: Impacts, point: Point) -> Impacts:
     """Convert impacts from SI to the paper's units, displacements to those of the faces."""
-    tau, closing = point.structure.omega * impacts.time, impacts.closing / point.speed
-    return Impacts(tau, point.faces(impacts.state), closing, impacts.sticks)
+    tau, closing = point.structure.omega * impacts.time, impacts.closing / point.velocity_unit
+    return Impacts(tau, point.faces_from_states(impacts.state), closing, impacts.sticks)

@@ -15,7 +15,7 @@ from ..errors import InputError
 from ..lazy import xr
 from ..model import Shaker, Structure
 from ..model.arguments import checked_positive
-from ..response.equations import absolute_accelerations
+from ..response.equations import absolute_accelerations_unforced
 from ..response.labels import variable
 from ..weak_drive.controllers import ControllerState, InputControl
 from ..weak_drive.cosimulate import cosimulate
@@ -173,7 +173,7 @@ def shake_on_shaker(
     )
     run = run.isel(time=slice(None, None, every))
     states = np.stack([run[name].values for name in ("x1", "x2", "v1", "v2")], axis=1)
-    one, two = absolute_accelerations(states, structure, run.in_contact.values).T
+    one, two = absolute_accelerations_unforced(states, structure, run.in_contact.values).T
     for name, values in (("a1_abs", one), ("a2_abs", two)):
         text = f"acceleration of mass {name[1]} in space, between impacts"
         run[name] = variable("time", values, "m/s2", text)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..lazy import xr
-from ..response.equations import absolute_accelerations
+from ..response.equations import absolute_accelerations_unforced
 from .record import record
 from .sensors import structure_of_history
 
@@ -54,7 +54,7 @@ def record_of_run(run: xr.Dataset) -> xr.Dataset:
         raise InputError(f"run: no {' and '.join(NEEDED[-2:])} over the time; {expected}")
     structure = structure_of_history(run, NEEDED)
     states = np.stack([run[name].values for name in STATE], axis=-1)
-    first, second = absolute_accelerations(states, structure).T
+    first, second = absolute_accelerations_unforced(states, structure).T
     return record(
         time=run.time.values,
         box_acceleration=run.box_acceleration.values,

@@ -17,7 +17,7 @@ from ..lazy import Unpack, xr
 from ..model import Excitation, Shaker, Structure
 from ..model.arguments import Number, checked_positive
 from ..model.ranges import PUSHES
-from ..response.equations import accelerations_with
+from ..response.equations import absolute_accelerations_by_forces
 from ..response.labels import make_dataset, variable, yes_or_no
 from ..response.questions import Question, checked_state, checked_structure
 from ..response.signatures import as_given, question
@@ -96,7 +96,7 @@ class ShakeJob(Question):
         driven = self.excitation_channels(samples)
         forces = np.stack([driven[name] for name in FORCES], axis=1) if self.has_forces else None
         motion = played.rows[:, :4], self.structure, played.touching
-        one, two = accelerations_with(forces, *motion, driven[BOX]).T
+        one, two = absolute_accelerations_by_forces(forces, *motion, driven[BOX]).T
         return {
             **dict(zip(PLAYED, played.rows.T, strict=True)),
             **{"in_contact": played.touching, "a1_abs": one, "a2_abs": two},

@@ -14,7 +14,7 @@ module                      idea
 :mod:`.sweep`               responses along a parameter; the columns of their CSV
 :mod:`.resonance`           resonance curves, bonded against delaminated, with peaks and jumps
 :mod:`.threshold`           the level at which a pressed structure opens, or an open one touches
-:mod:`.turns_and_jumps`     significant maxima and jumps of a curve
+:mod:`.maxima_and_jumps`     significant maxima and jumps of a curve
 :mod:`.spectra`             amplitude spectra of the masses' accelerations
 ==========================  ==================================================================
 """

@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
-def in_touch(states: Floats, gap_offset: ArrayLike = 0.0) -> Flags:
+def in_permanent_contact(states: Floats, gap_offset: ArrayLike = 0.0) -> Flags:
     """Return, for each state, whether it is permanent contact: no gap and equal velocities."""
     together = gap_between(states, gap_offset) == 0.0
     touching: Flags = together & (states[..., 2] == states[..., 3])
@@ -30,28 +30,27 @@ def acceleration_of_box(excitation: Excitation, phase: Floats) -> Floats:
     return box + excitation.box_acceleration if excitation.box_acceleration else box
 
 
-def accelerations_under(
+def absolute_accelerations_at(
     states: Floats, point: Point, phase: Floats, touching: Flags | None = None
 ) -> Floats:
     """Return both masses' absolute accelerations, as accelerometers read between impacts."""
     structure, excitation = point
-    forces = (excitation.force1, excitation.force2)
-    loads = np.outer(np.sin(phase), forces) if any(forces) else None
-    return accelerations_with(
-        loads, states, structure, touching, acceleration_of_box(excitation, phase)
-    )
+    amplitudes = (excitation.force1, excitation.force2)
+    forces = np.outer(np.sin(phase), amplitudes) if any(amplitudes) else None
+    box = acceleration_of_box(excitation, phase)
+    return absolute_accelerations_by_forces(forces, states, structure, touching, box)
 
 
-def accelerations_with(
+def absolute_accelerations_by_forces(
     forces: Floats | None,
     states: Floats,
     s: Structure,
     touching: Flags | None = None,
-    box: ArrayLike = 0.0,
+    box_acceleration: ArrayLike = 0.0,
 ) -> Floats:
     """Return the same under forces on both masses in N, with a wall that moves as the box."""
     if forces is None and not (s.wall or s.stroke):
-        return absolute_accelerations(states, s, touching)
+        return absolute_accelerations_unforced(states, s, touching)
     if touching is None:
         gap = gap_between(states, s.gap_offset)
         touching = (gap == 0.0) | ((s.stroke > 0.0) & np.isclose(gap, s.stroke, 1e-14, 0.0))
@@ -60,17 +59,18 @@ def accelerations_with(
     loads -= states[:, 2:] * (s.d1, s.d2)
     apart, both = loads / (s.m1, s.m2), loads.sum(axis=1) / (s.m1 + s.m2)
     if s.wall:
-        apart[:, 1] = both = box
+        apart[:, 1] = both = box_acceleration
     return np.where(touching[:, None], both[:, None], apart)
 
 
-def absolute_accelerations(
+def absolute_accelerations_unforced(
     states: Floats, structure: Structure, touching: Flags | None = None
 ) -> Floats:
     """Return the same without forces, wall or stroke, whatever the excitation."""
-    together = in_touch(states, structure.gap_offset) if touching is None else touching
-    rows, flags = np.ascontiguousarray(states, dtype=float), np.ascontiguousarray(together)
-    felt, numbers = np.empty((len(rows), 2)), traits(structure)
-    places = (part.ctypes.data for part in (flags, felt))
-    respond_library().find_accelerations(rows.ctypes.data, len(rows), numbers, *places)
-    return felt
+    if touching is None:
+        touching = in_permanent_contact(states, structure.gap_offset)
+    rows, flags = np.ascontiguousarray(states, dtype=float), np.ascontiguousarray(touching)
+    accelerations, numbers = np.empty((len(rows), 2)), traits(structure)
+    addresses = (part.ctypes.data for part in (flags, accelerations))
+    respond_library().find_accelerations(rows.ctypes.data, len(rows), numbers, *addresses)
+    return accelerations

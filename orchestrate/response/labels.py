@@ -17,20 +17,24 @@ STATE = ("x1", "x2", "v1", "v2")  # of a state in m and m/s
 
 
 def make_dataset(
-    variables: Mapping[str, Variable], coordinates: Mapping[str, Variable], title: str, **more: Any
+    variables: Mapping[str, Variable],
+    coordinates: Mapping[str, Variable],
+    title: str,
+    **attributes: Any,
 ) -> xr.Dataset:
-    return xr.Dataset(variables, coordinates, {"title": title, **more})
+    return xr.Dataset(variables, coordinates, {"title": title, **attributes})
 
 
-def variable(dims: Dims, values: Any, units: str, long_name: str, **more: Any) -> Variable:
-    return dims, values, {"units": units, "long_name": long_name, **more}
+def variable(dims: Dims, values: Any, units: str, long_name: str, **attributes: Any) -> Variable:
+    return dims, values, {"units": units, "long_name": long_name, **attributes}
 
 
 def column_variables(
-    dims: Dims, texts: Mapping[str, str], values: Iterable[Any]
+    dims: Dims, long_names: Mapping[str, str], columns: Iterable[Any]
 ) -> dict[str, Variable]:
-    parts = zip(texts.items(), values, strict=True)
-    return {name: variable(dims, column, "1", text) for (name, text), column in parts}
+    """Return dimensionless variables by the names and long names of their columns."""
+    pairs = zip(long_names.items(), columns, strict=True)
+    return {name: variable(dims, column, "1", text) for (name, text), column in pairs}
 
 
 def flags(dims: Dims, values: Any, long_name: str, meanings: Mapping[int, str]) -> Variable:
@@ -46,6 +50,7 @@ def yes_or_no(dims: Dims, values: Any, long_name: str) -> Variable:
 
 
 def parameter_variable(name: str, dims: Dims, values: Any) -> Variable:
+    """Return a variable of a parameter, with the unit and description that it has elsewhere."""
     quantity = {**STRUCTURE, **RATIO_QUANTITIES, **EXCITATION, "level": LEVEL}[name]
     return variable(dims, np.asarray(values, dtype=float), quantity.unit, quantity.description)
 

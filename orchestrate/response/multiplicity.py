@@ -44,8 +44,11 @@ class Decision(NamedTuple):
 def find_repetition(
     samples: ArrayLike, frequency: float, gap: float, tolerance: float
 ) -> Repetition:
-    """Find the least n after which the later half of states repeats (0: none), and deviation."""
-    memory = apply_rule("find_repetition", samples, (frequency, gap, tolerance))
+    """Find the least n after which the later half of states repeats (0: none), and its deviation.
+
+    ``gap`` is the motion's largest, m; the tolerance is over the motion's size.
+    """
+    memory = call_repetition_kernel("find_repetition", samples, (frequency, gap, tolerance))
     return Repetition(int(memory[repetition.MULTIPLICITY]), float(memory[repetition.DEVIATION]))
 
 
@@ -53,16 +56,17 @@ def nearest_state(
     samples: ArrayLike, frequency: float, gap: float, state: ArrayLike
 ) -> tuple[int, float]:
     """Return the number of the sample nearest to a state, and its distance over their size."""
-    states, near = (np.ascontiguousarray(part, dtype=float) for part in (samples, state))
-    memory = np.empty(memory_size(len(states)))
-    sizes, places = (frequency, gap), (near.ctypes.data, memory.ctypes.data)
-    distance = respond_library().nearest_state(states.ctypes.data, len(states), *sizes, *places)
+    rows, row = (np.ascontiguousarray(part, dtype=float) for part in (samples, state))
+    memory = np.empty(memory_size(len(rows)))
+    sizes, addresses = (frequency, gap), (row.ctypes.data, memory.ctypes.data)
+    distance = respond_library().nearest_state(rows.ctypes.data, len(rows), *sizes, *addresses)
     return int(memory[repetition.NEAREST]), float(distance)
 
 
-def apply_rule(
+def call_repetition_kernel(
     name: str, samples: ArrayLike, settings: tuple[float, float, float]
 ) -> NDArray[np.float64]:
+    """Call a function of ``kernels.repetition`` with these settings; return its memory."""
     states = np.asarray(samples, dtype=float)
     memory = np.zeros(memory_size(len(states)))
     memory[: repetition.MULTIPLICITY] = len(states), *settings

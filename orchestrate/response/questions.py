@@ -47,33 +47,34 @@ class Point(NamedTuple):
     excitation: Excitation
 
     @property
-    def length(self) -> float:
+    def displacement_unit(self) -> float:
         """Return the unit of displacement xi, a eta^2 in m (3)."""
         return self.excitation.length(self.structure)
 
     @property
-    def speed(self) -> float:
+    def velocity_unit(self) -> float:
         """Return the unit of velocity xi', omega a eta^2 in m/s."""
-        return self.structure.omega * self.length
+        return self.structure.omega * self.displacement_unit
 
     @property
-    def scale(self) -> NDArray[np.float64]:
+    def state_units(self) -> NDArray[np.float64]:
         """Return the units of a state's four coordinates: m, m, m/s, m/s."""
-        length = self.length
+        length = self.displacement_unit
         speed = self.structure.omega * length
         return np.array([length, length, speed, speed])
 
-    def faces(self, states: NDArray[np.float64]) -> NDArray[np.float64]:
+    def faces_from_states(self, states: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return SI states in the paper's units, by the faces: their difference is the gap."""
         offset = self.structure.gap_offset
         if offset != 0.0:
             states = np.array(states, dtype=float)
             states[..., 1] = states[..., 0] + gap_between(states, offset)
-        faces: NDArray[np.float64] = states / self.scale
+        faces: NDArray[np.float64] = states / self.state_units
         return faces
 
-    def from_faces(self, faces: NDArray[np.float64]) -> NDArray[np.float64]:
-        states: NDArray[np.float64] = faces * self.scale
+    def states_from_faces(self, faces: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return SI states of those in the paper's units by the faces."""
+        states: NDArray[np.float64] = faces * self.state_units
         if self.structure.wall:
             states[..., 1::2] = 0.0  # but for rounding
         elif self.structure.gap_offset != 0.0:
@@ -97,8 +98,8 @@ class Points(Sequence[Point]):
         chosen = self.numbers[key].tolist()
         return list(map(self.make, chosen)) if isinstance(chosen, list) else self.make(chosen)
 
-    def taken(self, numbers: NDArray[np.intp]) -> Points:
-        return Points(self.make, self.numbers[numbers])
+    def select(self, indices: NDArray[np.intp]) -> Points:
+        return Points(self.make, self.numbers[indices])
 
 
 @dataclass(frozen=True)
@@ -128,14 +129,14 @@ class Series:
         return coordinates
 
     @cached_property
-    def units(self) -> NDArray[np.float64]:
+    def displacement_and_velocity_units(self) -> NDArray[np.float64]:
         """Return the units of displacements and velocities at each point, shape (n, 2)."""
-        return point_rows(self.points, lambda point: point.scale[[0, -1]], 2)
+        return point_rows(self.points, lambda point: point.state_units[[0, -1]], 2)
 
     @property
-    def scales(self) -> NDArray[np.float64]:
+    def state_units(self) -> NDArray[np.float64]:
         """Return the units of the states' coordinates at each point, shape (n, 4)."""
-        return self.units.repeat(2, axis=1)
+        return self.displacement_and_velocity_units.repeat(2, axis=1)
 
 
 @lru_cache(maxsize=16)
@@ -148,11 +149,12 @@ def make_series(
     values: Numbers | None = None,
     pushes: tuple[tuple[str, Numbers], ...] = (),
 ) -> Series:
+    """Return the operating points along the one argument that is a list, or ``over``; checked."""
     excitation_values: dict[str, Any] = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
     excitation_values |= dict(pushes)
     excitation = {name: value for name, value in excitation_values.items() if value is not None}
-    varied = varied_values(over, values, excitation)
-    check_excitation_form(excitation.keys() | varied.keys())
+    varied = checked_over_values(over, values, excitation)
+    require_complete_excitation(excitation.keys() | varied.keys())
     for name in list(excitation):
         value = excitation[name]
         if isinstance(value, tuple):
@@ -161,19 +163,19 @@ def make_series(
     listed = (name for name in QUANTITIES if name in varied)
     name = over or next(listed, None) or next(iter(excitation))
     varied = varied or {name: (excitation[name],)}
-    check_lengths(name, over, varied)
+    require_equal_lengths(name, over, varied)
 
     @lru_cache(maxsize=KEPT_POINTS)
-    def make(number: int) -> Point:
+    def make_numbered_point(number: int) -> Point:
         row = {varying: numbers[number] for varying, numbers in varied.items()}
         return make_point(structure, {**excitation, **row})
 
-    points = Points(make, np.arange(len(varied[name])))
-    given = varied.get("eta") or excitation.get("eta")
-    if given is None:
+    points = Points(make_numbered_point, np.arange(len(varied[name])))
+    eta_values = varied.get("eta") or excitation.get("eta")
+    if eta_values is None:
         etas = point_rows(points, lambda point: (point.excitation.eta(point.structure),), 1)[:, 0]
     else:
-        etas = np.full(len(points), given)
+        etas = np.full(len(points), eta_values)
     pairs = point_rows(
         points, lambda each: (each.excitation.frequency, each.excitation.amplitude), 2
     )
@@ -187,9 +189,10 @@ def point_rows(
     return np.fromiter(map(row, points), np.dtype((float, (width,))), len(points))
 
 
-def varied_values(
+def checked_over_values(
     over: str | None, values: Numbers | None, excitation: Mapping[str, Numbers]
 ) -> dict[str, Any]:
+    """Return the parameter ``over`` with its values as a tuple; {} without one."""
     if over is None:
         if values is not None:
             raise InputError(
@@ -206,7 +209,8 @@ def varied_values(
     return {over: values if isinstance(values, tuple) else (values,)}
 
 
-def check_excitation_form(names: Any) -> None:
+def require_complete_excitation(names: Any) -> None:
+    """Raise unless these arguments are one of the forms in which an excitation is given."""
     if EXCITATION_PARAMETERS.keys() & set(names) not in COMPLETE:
         present = (
             " and ".join(f"{name}=" for name in EXCITATION_PARAMETERS if name in names) or "nothing"
@@ -214,7 +218,9 @@ def check_excitation_form(names: Any) -> None:
         raise InputError(f"excitation: {present} given; {FORMS}")
 
 
-def check_lengths(name: str, over: str | None, varied: Mapping[str, tuple[float, ...]]) -> None:
+def require_equal_lengths(
+    name: str, over: str | None, varied: Mapping[str, tuple[float, ...]]
+) -> None:
     others = [other for other in varied if other != name]
     if over and others:
         raise InputError(f"{others[0]}: is a list beside over = {over!r}; expected one number")
@@ -227,6 +233,7 @@ def check_lengths(name: str, over: str | None, varied: Mapping[str, tuple[float,
 
 
 def make_point(structure: Structure, arguments: Mapping[str, Any]) -> Point:
+    """Return the operating point of numbers by name: of the excitation, others of the structure."""
     changes = {name: value for name, value in arguments.items() if name not in QUANTITIES}
     pushes = {name: arguments[name] for name in PUSHES if name in arguments}
     changed = structure.replace(**changes) if changes else structure
@@ -251,10 +258,11 @@ def checked_point(
     amplitude: ArrayLike | None,
     **pushes: ArrayLike | None,
 ) -> Point:
+    """Return the one operating point of a user's arguments; raise unless they are complete."""
     arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude, **pushes}
-    given = {name: value for name, value in arguments.items() if value is not None}
-    values = {name: excitation_numbers(name, value) for name, value in given.items()}
-    check_excitation_form(values)
+    stated = {name: value for name, value in arguments.items() if value is not None}
+    values = {name: checked_excitation_numbers(name, value) for name, value in stated.items()}
+    require_complete_excitation(values)
     for name, value in values.items():
         if isinstance(value, tuple):
             raise InputError(f"{name}: {len(value)} values; expected one number")
@@ -277,16 +285,15 @@ def require_bonded_twin(structure: Structure) -> None:
         raise InputError(f"wall = True: mass 2 is a wall, {text}")
 
 
-def require_delaminated(structure: object, asked: str = "") -> Structure:
-    """Raise unless ``asked`` knows the structure: delaminated, without a wall or a stroke."""
+def require_delaminated(structure: object, function: str = "") -> None:
+    """Raise unless delaminated and, for a named function, without what only some know: a wall."""
     if checked_structure(structure).bonded:
         raise InputError("bonded = True: expected a delaminated structure (bonded = false)")
-    if asked:
-        refuse_unsupported_structure(asked, structure)
-    return structure  # type: ignore[return-value]
+    if function:
+        refuse_unsupported_structure(function, structure)
 
 
-def excitation_numbers(name: str, value: ArrayLike | None) -> Numbers | None:
+def checked_excitation_numbers(name: str, value: ArrayLike | None) -> Numbers | None:
     quantity = QUANTITIES.get(name)
     if quantity is None:
         return checked_numbers(name, value)
@@ -294,10 +301,11 @@ def excitation_numbers(name: str, value: ArrayLike | None) -> Numbers | None:
 
 
 # the type of `eta`, `frequency`, `amplitude` as one number or a list; units as in `Quantity`
-Values = Annotated[ArrayLike | None, excitation_numbers]
+Values = Annotated[ArrayLike | None, checked_excitation_numbers]
 
 
-def outside_gap(states: NDArray[np.float64], structure: Structure) -> NDArray[np.bool_]:
+def is_outside_gap(states: NDArray[np.float64], structure: Structure) -> NDArray[np.bool_]:
+    """Return, for each state, whether the masses overlap or the gap is beyond the stroke."""
     gap, rounding = gap_between(states, structure.gap_offset), 1.0 + 1e-14
     beyond = gap > structure.stroke * rounding if structure.stroke else False
     return np.asarray((gap < 0.0) | beyond)
@@ -310,16 +318,16 @@ def checked_states(name: str, value: ArrayLike | None, structure: Structure) -> 
         expected += f" - clearance, clearance = {structure.clearance!r} m"
     if structure.stroke:
         expected += f", and a gap of at most stroke = {structure.stroke!r} m"
-    given = checked_unmasked(name, REST if value is None else value)
+    start = checked_unmasked(name, REST if value is None else value)
     try:
-        rows = np.atleast_2d(np.asarray(given, dtype=float))
+        rows = np.atleast_2d(np.asarray(start, dtype=float))
     except NOT_NUMBERS:
         text = "a dataset" if hasattr(value, "data_vars") else repr(value)
         raise InputError(f"{name} = {text}: {expected}") from None
     if rows.ndim != 2 or rows.shape[1] != 4 or not len(rows):
         raise InputError(f"{name}: shape {rows.shape}; {expected}")
     with np.errstate(invalid="ignore"):
-        overlapping = outside_gap(rows, structure) & rows.any(axis=1)
+        overlapping = is_outside_gap(rows, structure) & rows.any(axis=1)
     wrong = ~np.isfinite(rows).all(axis=1) | overlapping
     if structure.bonded:
         expected = "expected x2 = x1 and v2 = v1 of a bonded structure"
@@ -340,21 +348,21 @@ def checked_state(name: str, value: ArrayLike | None, structure: Structure) -> t
     return tuple(rows[0].tolist())
 
 
-def start_states(
+def checked_start_states(
     start: ArrayLike | xr.Dataset | None, structure: Structure, series: Series
 ) -> State:
-    """Return the start states given by the user: one for all, one per value, or of a sweep."""
+    """Return the user's start states end to end: one for all, one per value, or of a sweep."""
     if hasattr(start, "end_state"):
         swept: xr.Dataset = start  # type: ignore[assignment]
-        there = swept.end_state.dims
-        known: ArrayLike = swept[series.name].values if series.name in there else []
-        if there != (series.name, "coordinate") or not np.isin(series.values, known).all():
+        dims = swept.end_state.dims
+        known: ArrayLike = swept[series.name].values if series.name in dims else []
+        if dims != (series.name, "coordinate") or not np.isin(series.values, known).all():
             raise InputError(
-                f"start: a dataset over {', '.join(map(str, there))}; expected a sweep in one "
+                f"start: a dataset over {', '.join(map(str, dims))}; expected a sweep in one "
                 f"direction over the same values of {series.name}"
             )
         ends = swept.end_state.sel({series.name: list(series.values)}, method="nearest")
-        return tuple((ends.values * series.scales).ravel().tolist())
+        return tuple((ends.values * series.state_units).ravel().tolist())
     rows = checked_states("start", start, structure)
     if len(rows) not in (1, len(series.values)):
         raise InputError(
@@ -388,11 +396,12 @@ class Question(Job, ABC):
         checked_structure(self.structure)
         self.check_and_convert_fields()
 
-    def to_answer(self) -> Question:
+    def answering_job(self) -> Question:
         """Return the job that answers the question: another one where its arguments make it so."""
         return self
 
     def format_call(self) -> str:
+        """Return Python source of the call with these arguments."""
         arguments: dict[str, Any] = {}
         for name, value in self.parameters().items():
             inside = isinstance(value, dict) and "sha256" not in value and name != "structure"
@@ -432,7 +441,7 @@ class SeriesQuestion(Question, ABC):
     def __post_init__(self) -> None:
         super().__post_init__()
         name = self.over if self.over in QUANTITIES else "values"
-        object.__setattr__(self, "values", excitation_numbers(str(name), self.values))
+        object.__setattr__(self, "values", checked_excitation_numbers(str(name), self.values))
         known = self.over in self.family or hasattr(self, str(self.over))
         if not known and self.over in (*PUSHES, "stroke"):
             raise InputError(f"over = {self.over!r}: {self.asked} does not know it yet")
@@ -445,8 +454,9 @@ class SeriesQuestion(Question, ABC):
 
     @property
     def pushes(self) -> tuple[tuple[str, Numbers], ...]:
-        given = ((name, getattr(self, name, 0.0)) for name in PUSHES if name != self.over)
-        return tuple((name, value) for name, value in given if value != 0.0)
+        """Return the loads other than the box's harmonic motion, as (name, values), if not 0."""
+        loads = ((name, getattr(self, name, 0.0)) for name in PUSHES if name != self.over)
+        return tuple((name, value) for name, value in loads if value != 0.0)
 
     def count(self) -> int:
         return len(self.series.values)
@@ -456,8 +466,10 @@ class SeriesQuestion(Question, ABC):
 
 
 class StartedSeriesQuestion(SeriesQuestion, ABC):
-    """Base of those whose responses start from given states, see :func:`start_states`."""
+    """Base of those whose responses start from given states, see :func:`checked_start_states`."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        object.__setattr__(self, "start", start_states(self.start, self.structure, self.series))
+        object.__setattr__(
+            self, "start", checked_start_states(self.start, self.structure, self.series)
+        )

@@ -18,11 +18,18 @@ from ..model.outcomes import IRREGULAR
 from ..running.job import Table
 from ..running.options import Running
 from .labels import Variable, make_dataset, parameter_variable, variable, yes_or_no
-from .questions import Point, Series, Values, excitation_numbers, make_series, require_bonded_twin
+from .maxima_and_jumps import in_irregular_range, jump_indices, prominent_maximum_indices
+from .questions import (
+    Point,
+    Series,
+    Values,
+    checked_excitation_numbers,
+    make_series,
+    require_bonded_twin,
+)
 from .signatures import as_given, question
 from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, response_variables
 from .threshold import threshold_variables
-from .turns_and_jumps import inside_irregular, jump_indices, prominent_maxima
 
 KINDS = ("bonded", "delaminated")
 DIMENSIONS = ("structure", "direction")
@@ -57,7 +64,7 @@ class ResonanceJob(SweepJob):
         ordered = {name: self.in_order(values) for name, values in table.items()}
         title = f"Resonance curves: {self.structure.label()}"
         curves = make_dataset(self.variables(ordered), self.coordinates(), title)
-        return curves.assign(self.peaks(curves) | self.jumps(curves))
+        return curves.assign(self.peak_variables(curves) | self.jump_variables(curves))
 
     def in_order(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
         """Reorder rows to (structure, direction, value), the values as they were given."""
@@ -68,10 +75,14 @@ class ResonanceJob(SweepJob):
         return np.array(ordered)
 
     def variables(self, table: Table) -> dict[str, Variable]:
-        along, length = (*DIMENSIONS, self.series.name), self.series.units[:, 0]
-        return {**self.threshold(), **response_variables(along, table, length, REPORTED)}
+        along, length = (
+            (*DIMENSIONS, self.series.name),
+            self.series.displacement_and_velocity_units[:, 0],
+        )
+        return {**self.threshold_curve(), **response_variables(along, table, length, REPORTED)}
 
-    def threshold(self) -> dict[str, Variable]:
+    def threshold_curve(self) -> dict[str, Variable]:
+        """Return the variables of the contact threshold; none where it is not known."""
         structure = self.structure.as_delaminated()
         if structure.gap_offset == 0.0 or structure.stroke or self.pushes:  # unknown there
             return {}
@@ -91,46 +102,46 @@ class ResonanceJob(SweepJob):
             ),
         }
 
-    def curves(self, data: xr.Dataset) -> list[xr.Dataset]:
+    def split_curves(self, data: xr.Dataset) -> list[xr.Dataset]:
         """Return the distinct curves by frequency: bonded once, delaminated by direction."""
         ordered = data.sortby(self.series.name)
-        glued = [ordered.isel(structure=0, direction=0)]
-        return glued + [ordered.isel(structure=1, direction=i) for i in range(data.direction.size)]
+        bonded = [ordered.isel(structure=0, direction=0)]
+        return bonded + [ordered.isel(structure=1, direction=i) for i in range(data.direction.size)]
 
-    def peaks(self, data: xr.Dataset) -> dict[str, Variable]:
-        rows, noise = [], []
-        for curve in self.curves(data):
-            parts = str(curve.structure.values) != KINDS[0]  # glued, no response is irregular
-            inside = inside_irregular(parts & (curve.multiplicity_decided.values == IRREGULAR))
+    def peak_variables(self, data: xr.Dataset) -> dict[str, Variable]:
+        rows, irregular = [], []
+        for curve in self.split_curves(data):
+            parts = str(curve.structure.values) != KINDS[0]  # bonded, no response is irregular
+            inside = in_irregular_range(parts & (curve.multiplicity_decided.values == IRREGULAR))
             larger = np.maximum(curve.x1_max.values, curve.x2_max.values)
-            for index in prominent_maxima(larger, self.prominence):
+            for index in prominent_maximum_indices(larger, self.prominence):
                 rows.append(curve.isel({self.series.name: index}))
-                noise.append(inside[index])
+                irregular.append(inside[index])
         sizes = {name: [float(row[name]) for row in rows] for name in PEAK_QUANTITIES}
         text = "whether it lies inside a range of irregular responses, where a maximum is chance"
         return {
-            **self.locations("peak", rows),
-            "peak_irregular": yes_or_no("peak", noise, text),
+            **self.location_variables("peak", rows),
+            "peak_irregular": yes_or_no("peak", irregular, text),
             **{f"peak_{n}": variable("peak", sizes[n], *REPORTED[n]) for n in PEAK_QUANTITIES},
         }
 
-    def jumps(self, data: xr.Dataset) -> dict[str, Variable]:
+    def jump_variables(self, data: xr.Dataset) -> dict[str, Variable]:
         rows, sizes, name = [], [], self.series.name
-        for curve in self.curves(data):
+        for curve in self.split_curves(data):
             down = str(curve.direction.values) == "down"
-            passed = curve.isel({name: np.s_[::-1]}) if down else curve
-            gaps = passed.x_rel_max.values
-            here = {"structure": str(curve.structure.values)}
-            differ = self.directions_differ(data.sel(here | {name: passed[name].values}))
+            computed = curve.isel({name: np.s_[::-1]}) if down else curve
+            gaps = computed.x_rel_max.values
+            kind = {"structure": str(curve.structure.values)}
+            differ = self.directions_differ(data.sel(kind | {name: computed[name].values}))
             for index in jump_indices(gaps, self.jump):
                 if not (differ[index] or differ[index + 1]):
                     continue  # both directions alike: steep, or a gap between frequencies
-                rows.append(passed.isel({self.series.name: index + 1}))
+                rows.append(computed.isel({self.series.name: index + 1}))
                 sizes.append((gaps[index], gaps[index + 1]))
         text = "largest gap {} the jump"
         before, after = np.reshape(sizes, (-1, 2)).T
         return {
-            **self.locations("jump", rows),
+            **self.location_variables("jump", rows),
             "jump_before": variable("jump", before, "m", text.format("before")),
             "jump_after": variable("jump", after, "m", text.format("after")),
         }
@@ -141,7 +152,8 @@ class ResonanceJob(SweepJob):
         high, low = values.max(axis=0), values.min(axis=0)
         return (high - low > self.jump * high) | (len(values) == 1)
 
-    def locations(self, what: str, rows: Sequence[xr.Dataset]) -> dict[str, Variable]:
+    def location_variables(self, what: str, rows: Sequence[xr.Dataset]) -> dict[str, Variable]:
+        """Return structure, direction and frequency of rows, which are all peaks or all jumps."""
         labels = {name: [str(row[name].values) for row in rows] for name in DIMENSIONS}
         words = {
             f"{what}_{name}": variable(what, np.array(texts, dtype="U11"), "1", name)
@@ -159,15 +171,15 @@ class ResonanceJob(SweepJob):
         }
 
 
-def distinct_numbers(name: str, value: Any) -> tuple[float, ...]:
-    values = excitation_numbers(name, value)
+def checked_distinct_numbers(name: str, value: Any) -> tuple[float, ...]:
+    values = checked_excitation_numbers(name, value)
     listed = values if isinstance(values, tuple) else (values,)
     if values is None or len(set(listed)) < len(listed):
         raise InputError(f"{name}: expected numbers, each once")
     return tuple(float(number) for number in listed if number is not None)
 
 
-DistinctNumbers = Annotated[ArrayLike, distinct_numbers]
+DistinctNumbers = Annotated[ArrayLike, checked_distinct_numbers]
 
 
 class ResonanceLevelsJob(ResonanceJob):
@@ -178,13 +190,15 @@ class ResonanceLevelsJob(ResonanceJob):
         return make_series(self.structure, None, self.frequency, self.amplitudes(self.level[0]))
 
     def amplitudes(self, level: float) -> tuple[float, ...]:
+        """Return the box's amplitude, m, at each frequency for a peak acceleration in m/s2."""
         return tuple(level / f**2 for f in self.frequency)
 
     @cached_property
     def level_jobs(self) -> tuple[ResonanceJob, ...]:
-        own = {field.name: getattr(self, field.name) for field in fields(ResonanceJob)}
+        """Return the job of each level, for its items and its part of the dataset."""
+        shared = {field.name: getattr(self, field.name) for field in fields(ResonanceJob)}
         return tuple(
-            ResonanceJob(**own | {"amplitude": self.amplitudes(level)}) for level in self.level
+            ResonanceJob(**shared | {"amplitude": self.amplitudes(level)}) for level in self.level
         )
 
     def count_independent_series(self) -> int:
@@ -201,24 +215,26 @@ class ResonanceLevelsJob(ResonanceJob):
         ]
         levels = xr.Variable(*parameter_variable("level", "level", self.level))
         whole, *_ = regular = [curve.drop_dims(RAGGED) for curve in curves]
-        kept = [str(name) for name, one in whole.data_vars.items() if "structure" in one.dims]
+        kept = [str(name) for name, each in whole.data_vars.items() if "structure" in each.dims]
         dim = xr.DataArray(levels, dims="level", name="level")
         alike: Any = {"coords": ["amplitude"], "compat": "equals", "join": "exact"}
         joined = xr.concat(regular, dim, data_vars=kept, **alike)
         ragged = []
         for name in RAGGED:
-            rows = [self.rows_of_level(i, curve, name) for i, curve in enumerate(curves)]
+            rows = [self.add_level(i, curve, name) for i, curve in enumerate(curves)]
             ragged.append(xr.concat(rows, dim=name))
         result = xr.merge([joined, *ragged], combine_attrs="drop_conflicts")
         result.attrs["title"] = f"Resonance curves over the level: {self.structure.label()}"
         return result
 
-    def rows_of_level(self, index: int, curve: xr.Dataset, name: str) -> xr.Dataset:
-        of_kind = [str(key) for key, values in curve.data_vars.items() if values.dims == (name,)]
-        part = curve[of_kind].reset_coords(drop=True)
-        level = np.full(curve.sizes[name], self.level[index])
-        text = f"level of the {name}: peak acceleration of the box"
-        return part.assign({f"{name}_level": variable(name, level, "m/s2", text)})
+    def add_level(self, index: int, curve: xr.Dataset, dimension: str) -> xr.Dataset:
+        """Return a curve's peaks or jumps alone, each with the level that has this index."""
+        data = curve.data_vars.items()
+        names = [str(name) for name, values in data if values.dims == (dimension,)]
+        part = curve[names].reset_coords(drop=True)
+        level = np.full(curve.sizes[dimension], self.level[index])
+        text = f"level of the {dimension}: peak acceleration of the box"
+        return part.assign({f"{dimension}_level": variable(dimension, level, "m/s2", text)})
 
 
 @question(ResonanceJob)

@@ -31,7 +31,7 @@ class Response:
     gap_offset: float = 0.0  # the gap between unloaded springs, m
     # whether no response without impacts exists: the linear one would open or touch
     has_to_impact: bool = False
-    known_multiplicity: int | None = None  # within the tolerance, where it has been found
+    known_multiplicity: int | None = None  # within the tolerance, where it is known already
 
     @cached_property
     def multiplicity(self) -> int:
@@ -49,10 +49,11 @@ class Response:
 
     @property
     def gap(self) -> NDArray[np.float64]:
+        """Return the gap at the samples, m."""
         return gap_between(self.samples, self.gap_offset)
 
 
-def respond(
+def simulate_response(
     instance: Instance,
     structure: Structure,
     excitation: Excitation,
@@ -61,9 +62,10 @@ def respond(
     samples: int,
     tolerance: float,
 ) -> Response:
+    """Run one response from a start at phase 0; transient and samples are in periods."""
     points = [Point(structure, excitation)]
     settings = LoopSettings(transient=transient, samples=samples)
-    results = response_loop(instance).respond(points, [four_numbers(start)], settings)
+    results = response_loop(instance).simulate(points, [four_numbers(start)], settings)
     return next(responses_from(results, points, tolerance))
 
 
@@ -73,6 +75,7 @@ def responses_from(
     tolerance: float,
     multiplicity: Sequence[int] | None = None,
 ) -> Iterator[Response]:
+    """Yield the loop's results as responses; their multiplicity is found when it is read."""
     count = results.states.shape[1]
     columns = zip(*(results.counts[name].tolist() for name in COUNTS), strict=True)
     for i, (point, numbers) in enumerate(zip(points, columns, strict=True)):

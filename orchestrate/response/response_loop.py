@@ -69,14 +69,15 @@ class Responses(NamedTuple):
     counts: dict[str, NDArray[np.int32]]  # by `COUNTS`
     must_impact: NDArray[np.bool_]  # whether no motion without impacts exists
 
-    def rows(self, chosen: NDArray[np.intp]) -> Responses:
-        counts = {name: numbers[chosen] for name, numbers in self.counts.items()}
-        parts = (counts if isinstance(part, dict) else part[chosen] for part in self)
+    def select(self, indices: NDArray[np.intp]) -> Responses:
+        """Return the results of some of the responses."""
+        counts = {name: numbers[indices] for name, numbers in self.counts.items()}
+        parts = (counts if isinstance(part, dict) else part[indices] for part in self)
         return Responses._make(parts)
 
 
-class Rows(NamedTuple):
-    """What is set before each start, and of each response the period and traits."""
+class PointRows(NamedTuple):
+    """Of each operating point: what is set before its start, its period and its traits."""
 
     reals: Floats
     booleans: NDArray[np.bool_]
@@ -85,6 +86,7 @@ class Rows(NamedTuple):
 
 
 def response_loop(instance: Instance) -> ResponseLoop:
+    """Return the loop of an instance, made once."""
     loop: ResponseLoop | None = instance.cache.get(ResponseLoop)
     if loop is None:
         loop = instance.cache[ResponseLoop] = ResponseLoop(instance)
@@ -97,15 +99,16 @@ class ResponseLoop:
     def __init__(self, instance: Instance) -> None:
         self.oscillator = Oscillator.from_instance(instance)
         self.last_points: list[Point] = []
-        self.last_rows: Rows | None = None
+        self.last_rows: PointRows | None = None
 
-    def respond(
+    def simulate(
         self, points: Sequence[Point], starts: ArrayLike, settings: LoopSettings
     ) -> Responses:
-        chosen, count, rows = settings, len(points), self.rows(points)
+        """Run a response at each point, from a start of each; of a chain from the first one's."""
+        count, rows = len(points), self.point_rows(points)
         counts = np.zeros((count, len(COUNTS)), np.int32)
         results = Responses(
-            states=np.empty((count, chosen.samples, 4)),
+            states=np.empty((count, settings.samples, 4)),
             ends=np.empty((count, 4)),
             x_rel_max=np.empty(count),
             impacts=np.empty(count),
@@ -114,39 +117,41 @@ class ResponseLoop:
             counts=dict(zip(COUNTS, counts.T, strict=True)),
             must_impact=rows.traits[:, -1] != 0.0,
         )
-        piece = chosen.compared if chosen.known else MAX_WORK
-        lengths = np.array([len(motion.states) for motion in chosen.known], np.uintp)
-        memory = np.empty(memory_size(max(chosen.samples, *lengths.tolist(), 1)))
-        transients = np.full(count, chosen.transient, dtype=np.uint64)
+        piece = settings.compared if settings.known else MAX_WORK
+        lengths = np.array([len(motion.states) for motion in settings.known], np.uintp)
+        memory = np.empty(memory_size(max(settings.samples, *lengths.tolist(), 1)))
+        transients = np.full(count, settings.transient, dtype=np.uint64)
         inputs = (transients, *rows, np.ascontiguousarray(starts, dtype=float), memory)
         task = ResponseTask(
-            *(count, chosen.samples, chosen.peak_periods, piece),
-            *(chosen.tolerance, chosen.loose, chosen.chain_gap or 0.0),
-            *(chosen.decides, chosen.is_chain, chosen.chain_gap is not None),
+            *(count, settings.samples, settings.peak_periods, piece),
+            *(settings.tolerance, settings.loose, settings.chain_gap or 0.0),
+            *(settings.decides, settings.is_chain, settings.chain_gap is not None),
             *(table.ctypes.data for table in (*inputs, *results[:6], counts)),
         )
-        if chosen.known:
-            states = np.concatenate([motion.states for motion in chosen.known])
-            gaps = np.array([motion.gap for motion in chosen.known])
+        if settings.known:
+            states = np.concatenate([motion.states for motion in settings.known])
+            gaps = np.array([motion.gap for motion in settings.known])
             tables = (table.ctypes.data for table in (states, gaps, lengths))
             state = references(self.oscillator.instance, STATE)
-            task.known = pointer(KnownMotions(len(gaps), state, *tables, chosen.same))
+            task.known = pointer(KnownMotions(len(gaps), state, *tables, settings.same))
         self.run(task)
         return results
 
     def run(self, task: ResponseTask) -> None:
+        """Call the compiled loop until the task is done; it writes into the task's arrays."""
         progress, answer = ResponseProgress(), PAUSED
         while answer == PAUSED:
             answer = self.oscillator.run("respond", byref(task), byref(progress), MAX_WORK)
         if answer == BROKEN:
             raise self.oscillator.error()
 
-    def rows(self, points: Sequence[Point]) -> Rows:
+    def point_rows(self, points: Sequence[Point]) -> PointRows:
+        """Return the rows of points, those of the last call if the points are the same."""
         if self.last_rows is not None and points == self.last_points:
             return self.last_rows
         different = {id(point): point for point in points}  # as of a basin: one for all starts
         index = {key: i for i, key in enumerate(different)}
-        chosen = np.array([index[id(point)] for point in points])
+        indices = np.array([index[id(point)] for point in points])
         names = self.oscillator.reals, self.oscillator.booleans
         sets = [
             {**START_VALUES, **point.structure.parameters(), **point.excitation.inputs()}
@@ -154,17 +159,17 @@ class ResponseLoop:
         ]
         tables = (
             *(
-                np.array([[row[name] for name in some] for row in sets], dtype=kind)
-                for some, kind in zip(names, (float, bool), strict=True)
+                np.array([[row[name] for name in group] for row in sets], dtype=kind)
+                for group, kind in zip(names, (float, bool), strict=True)
             ),
             np.array([point.excitation.period for point in different.values()]),
-            np.array([traits_of(point) for point in different.values()]),
+            np.array([traits_of_point(point) for point in different.values()]),
         )
         self.last_points = list(points)
-        self.last_rows = Rows(*(np.ascontiguousarray(table[chosen]) for table in tables))
+        self.last_rows = PointRows(*(np.ascontiguousarray(table[indices]) for table in tables))
         return self.last_rows
 
 
-def traits_of(point: Point) -> Any:
+def traits_of_point(point: Point) -> Any:
     excitation, pushed = point.excitation, any(point.excitation.pushes)
     return traits(point.structure, excitation.frequency, excitation.amplitude, pushed)

@@ -39,40 +39,42 @@ def question(kind: type[Question]) -> Callable[[Function], Function]:
 
     def decorate(function: Function) -> Function:
         signature = inspect.signature(function)
-        own = list(signature.parameters)
-        take_fields(kind, function.__name__, signature.parameters)
+        known = list(signature.parameters)
+        make_fields_of_arguments(kind, function.__name__, signature.parameters)
 
         @wraps(function)
         def ask(*positional: Any, **keywords: Any) -> xr.Dataset:
-            if "running" in own:  # else others are taken too
-                refuse_unknown_keywords(keywords, own)
+            if "running" in known:  # else others are taken too
+                refuse_unknown_keywords(keywords, known)
             changes = function(*positional, **keywords)
             if not isinstance(changes, Changes):
                 return changes
             call = signature.bind(*positional, **keywords)
             call.apply_defaults()
-            of = checked_structure(call.arguments["structure"]).label()
-            label = f"{kind.result or kind.asked}_{of}{changes.label}"
+            structure = checked_structure(call.arguments["structure"]).label()
+            name = f"{kind.result or kind.asked}_{structure}{changes.label}"
             running = changes.fields.pop("running", call.arguments.get("running", {}))
             names = {field.name for field in fields(kind)}.intersection(call.arguments)
-            given = {name: call.arguments[name] for name in names}
-            job = kind(**{"name": label, **given, **changes.fields})
-            return answer_question(job.to_answer(), running)
+            arguments = {name: call.arguments[name] for name in names}
+            job = kind(**{"name": name, **arguments, **changes.fields})
+            return answer_question(job.answering_job(), running)
 
         return cast(Function, ask)
 
     return decorate
 
 
-def take_fields(kind: type[Question], asked: str, parameters: Mapping[str, Parameter]) -> None:
+def make_fields_of_arguments(
+    kind: type[Question], function: str, parameters: Mapping[str, Parameter]
+) -> None:
     """Make a class a frozen dataclass whose fields are a function's arguments, and its own."""
-    own = inspect.get_annotations(kind)
+    annotations = inspect.get_annotations(kind)
     for name, parameter in parameters.items():
         variadic = parameter.kind is Parameter.VAR_KEYWORD
-        if variadic or name in kind.replaced or name in own or name == "structure":
+        if variadic or name in kind.replaced or name in annotations or name == "structure":
             continue
-        own[name] = parameter.annotation
+        annotations[name] = parameter.annotation
         if parameter.default is not Parameter.empty:
             setattr(kind, name, parameter.default)
-    kind.__annotations__, kind.asked = own, asked
+    kind.__annotations__, kind.asked = annotations, function
     dataclass(frozen=True, kw_only=True)(kind)

@@ -15,7 +15,7 @@ from ..model import Structure
 from ..model.arguments import Count, Transient
 from ..running.job import FAMILY, Table
 from ..running.options import Running
-from .equations import acceleration_of_box, accelerations_under
+from .equations import absolute_accelerations_at, acceleration_of_box
 from .labels import Variable, make_dataset, variable, yes_or_no
 from .questions import OneMotionQuestion, Point, checked_point, checked_state
 from .signatures import as_given, question
@@ -45,31 +45,32 @@ class SimulateJob(OneMotionQuestion):
     replaced: ClassVar[tuple[str, ...]] = (*OneMotionQuestion.replaced, "phase")
     family: ClassVar[tuple[str, ...]] = FAMILY
 
-    def grid(self) -> NDArray[np.float64]:
+    def communication_times(self) -> NDArray[np.float64]:
+        """Return the times, s, of all points kept, from the end of the transient on."""
         numbers = np.arange(self.periods * self.points + 1)
         return (self.transient + numbers / self.points) * self.excitation.period
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
-        grid = self.grid()
+        times = self.communication_times()
         with EventInstance(fmus[OSCILLATOR]) as instance:
             begin(instance, *items[0], self.start)
-            instance.impacts(0.0, float(grid[0]))
-            ends = grid[[0, -1]]
+            instance.impacts(0.0, float(times[0]))
+            ends = times[[0, -1]]
             loop = instance.event_loop((), OUTPUTS)
-            rows, touching, impacts = loop.run(ends, NO_INPUT, grid)
+            rows, touching, impacts = loop.run(ends, NO_INPUT, times)
         columns = dict(zip(OUTPUTS, rows.T, strict=True))
         columns["in_contact"] = touching
         columns |= impact_columns(impacts, self.structure)
-        return {**columns, **self.accelerations(rows, touching)}
+        return {**columns, **self.acceleration_columns(rows, touching)}
 
-    def accelerations(
+    def acceleration_columns(
         self, rows: NDArray[np.float64], touching: NDArray[np.bool_]
     ) -> dict[str, NDArray[np.float64]]:
         point, phase = self.items()[0], rows[:, OUTPUTS.index("phase")]
         box = acceleration_of_box(point.excitation, phase)
-        first, second = accelerations_under(rows[:, :4], point, phase, touching).T
+        first, second = absolute_accelerations_at(rows[:, :4], point, phase, touching).T
         return {
             "box_acceleration": box,
             **{"a1_abs": first, "a2_abs": second},
@@ -87,7 +88,7 @@ class SimulateJob(OneMotionQuestion):
         return make_dataset(variables, self.coordinates(), title)
 
     def coordinates(self) -> dict[str, Variable]:
-        time = self.grid()
+        time = self.communication_times()
         tau, turns = self.structure.omega * time, time / self.excitation.period
         return {
             "time": variable("time", time, "s", "time from the start"),

@@ -25,7 +25,7 @@ from ..model import Excitation, Structure
 from ..model.arguments import Count, Positive, Transient, whole
 from ..running.job import FAMILY, Table
 from ..running.options import Running
-from .equations import accelerations_under
+from .equations import absolute_accelerations_at
 from .labels import make_dataset, variable
 from .questions import Point, SeriesQuestion, Values, require_bonded_twin
 from .signatures import as_given, question
@@ -53,9 +53,9 @@ def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floa
     count = rows.shape[-1]
     memory, lines = np.empty(spectrum_library().spectrum_size(count)), np.arange(count // 2 + 1)
     amplitudes = np.empty((*rows.shape[:-1], len(lines)))
-    for place in np.ndindex(rows.shape[:-1]):
-        places = memory.ctypes.data, amplitudes[place].ctypes.data
-        spectrum_library().amplitude_spectrum(rows[place].ctypes.data, count, *places)
+    for index in np.ndindex(rows.shape[:-1]):
+        addresses = memory.ctypes.data, amplitudes[index].ctypes.data
+        spectrum_library().amplitude_spectrum(rows[index].ctypes.data, count, *addresses)
     return 2.0 * np.pi * lines / (count * interval), amplitudes
 
 
@@ -88,6 +88,7 @@ class SpectraJob(SeriesQuestion):
             )
 
     def orders(self) -> Floats:
+        """Return the lines' frequencies as multiples of the excitation's, up to the highest."""
         orders = np.arange(self.periods * self.points // 2 + 1) / self.periods
         return orders[orders <= self.highest]
 
@@ -97,12 +98,14 @@ class SpectraJob(SeriesQuestion):
         amplitudes = []
         with Instance(fmus[OSCILLATOR]) as instance:
             for structure, excitation in items:
-                glued = self.spectrum(instance, Point(structure.as_bonded(), excitation))
-                free = self.spectrum(instance, Point(structure.as_delaminated(), excitation))
-                amplitudes.append([glued[0], *free])
+                bonded, delaminated = structure.as_bonded(), structure.as_delaminated()
+                with_impulses, _ = self.simulate_spectra(instance, Point(bonded, excitation))
+                both = self.simulate_spectra(instance, Point(delaminated, excitation))
+                amplitudes.append([with_impulses, *both])
         return {"acceleration": np.array(amplitudes)}
 
-    def spectrum(self, instance: Instance, point: Point) -> tuple[Floats, Floats]:
+    def simulate_spectra(self, instance: Instance, point: Point) -> tuple[Floats, Floats]:
+        """Run a response from rest; return its spectra with impulses, and between impacts."""
         span, count = point.excitation.period, self.periods * self.points
         first, last = self.transient * span, (self.transient + self.periods) * span
         begin(instance, *point, REST)
@@ -110,7 +113,7 @@ class SpectraJob(SeriesQuestion):
             instance.step(0.0, first)
         states = sampled(instance, first, last, count)
         phase = TURN * np.arange(1, count + 1) / self.points
-        accelerations = accelerations_under(states, point, phase)
+        accelerations = absolute_accelerations_at(states, point, phase)
         shown, interval = len(self.orders()), span / self.points
         with_impulses = acceleration_spectrum(states, self.periods, point.excitation)
         _, between = amplitude_spectrum(accelerations.T, interval)

@@ -64,26 +64,27 @@ class SweepJob(StartedSeriesQuestion):
                 f"{name}: {twice!r} twice; expected each value once, or direction='given'"
             )
 
-    def to_answer(self) -> SweepJob:
+    def answering_job(self) -> SweepJob:
         """Return the job; that of values that do not depend on another if each has its start."""
         if len(self.start) == len(labels.COORDINATES):
             return self
         starts = np.reshape(self.start, (-1, len(labels.COORDINATES)))
-        return RunOnJob(**vars(self) | {"direction": "given", "start": starts})
+        return IndependentStartsJob(**vars(self) | {"direction": "given", "start": starts})
 
-    def orders(self) -> list[NDArray[np.intp]]:
+    def computing_orders(self) -> list[NDArray[np.intp]]:
+        """Return the indices of the values in the order of computing, one array a direction."""
         up = np.argsort(self.series.values, kind="stable")
         known = {"up": [up], "down": [up[::-1]], "both": [up, up[::-1]]}
         return known.get(self.direction) or [np.arange(len(up))]
 
     def count_independent_series(self) -> int:
-        return len(self.orders())
+        return len(self.computing_orders())
 
     def count(self) -> int:
         return self.count_independent_series() * super().count()
 
     def items(self) -> Sequence[Point]:
-        return self.series.points.taken(np.concatenate(self.orders()))
+        return self.series.points.select(np.concatenate(self.computing_orders()))
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
@@ -91,32 +92,32 @@ class SweepJob(StartedSeriesQuestion):
         start, offset = self.start, self.structure.gap_offset
         if previous is not None:
             start, offset = previous["end"][-1], float(previous["gap_offset"][-1])
-        return self.table(fmus, items, [start], is_chain=True, chain_gap=offset)
+        return self.compute_table(fmus, items, [start], is_chain=True, chain_gap=offset)
 
-    def table(
+    def compute_table(
         self, fmus: Mapping[str, Path], points: Sequence[Point], starts: ArrayLike, **chain: Any
     ) -> Table:
         names = ("transient", "samples", "tolerance", "peak_periods")
-        own: Any = {name: getattr(self, name) for name in names}
-        settings = LoopSettings(**own, decides=True, **chain)
+        arguments: Any = {name: getattr(self, name) for name in names}
+        settings = LoopSettings(**arguments, decides=True, **chain)
         with Instance(fmus[OSCILLATOR]) as instance:
-            results = response_loop(instance).respond(points, starts, settings)
+            results = response_loop(instance).simulate(points, starts, settings)
         responses = responses_from(results, points, self.tolerance)
-        rows = [self.row(each) for each in decisions_from(results, responses)]
+        rows = [self.table_row(each) for each in decisions_from(results, responses)]
         table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
         table["end"] = results.ends
         return {**table, **dict(zip(PEAKS, results.peaks.T, strict=True))}
 
-    def row(self, decided: DecidedResponse) -> dict[str, Any]:
-        response, found, impacts = decided
+    def table_row(self, decided: DecidedResponse) -> dict[str, Any]:
+        response, decision, impacts = decided
         return {
             "gap": response.gap,
             "gap_offset": response.gap_offset,
             "x_rel_max": response.x_rel_max,
             "impacts_per_period": impacts,
             "permanent_contact": response.permanent_contact,
-            "multiplicity": found.multiplicity,
-            "decided": found.decided,
+            "multiplicity": decision.multiplicity,
+            "decided": decision.decided,
         }
 
     def boundary_state(self, table: Table) -> bytes:
@@ -132,7 +133,7 @@ class SweepJob(StartedSeriesQuestion):
 
     def in_order(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
         """Reorder rows from computing order to the values' order, (direction, value) if both."""
-        orders = self.orders()
+        orders = self.computing_orders()
         rows = values.reshape(len(orders), -1, *values.shape[1:])
         ordered = np.empty_like(rows)
         for index, order in enumerate(orders):
@@ -141,7 +142,7 @@ class SweepJob(StartedSeriesQuestion):
 
     def gaps_in_order(self, gaps: NDArray[np.float64] | StoredRows) -> Any:
         """Return the samples of the gap over a eta^2 in the values' order, lazily if stored."""
-        length = self.series.units[:, :1]
+        length = self.series.displacement_and_velocity_units[:, :1]
         if isinstance(gaps, np.ndarray):
             return np.asarray(self.in_order(gaps), dtype=float) / length
         numbers = self.in_order(np.arange(gaps.shape[0], dtype=np.intp))
@@ -157,7 +158,7 @@ class SweepJob(StartedSeriesQuestion):
         if self.direction == "both":
             along = ("direction", self.series.name)
         text = "stroboscopic samples of the gap xi_2 - xi_1 (21)"
-        units, end = self.series.units, table["end"]
+        units, end = self.series.displacement_and_velocity_units, table["end"]
         end[..., :2] /= units[:, :1]  # in place, of a long sweep
         end[..., 2:] /= units[:, 1:]
         return {
@@ -181,7 +182,7 @@ class SweepJob(StartedSeriesQuestion):
         return coordinates
 
 
-class RunOnJob(SweepJob):
+class IndependentStartsJob(SweepJob):
     """Job of :func:`orchestrate.sweep` from another sweep: each value has a start of its own."""
 
     chunk_size: ClassVar[int] = 20
@@ -194,12 +195,15 @@ class RunOnJob(SweepJob):
         return list(zip(points, map(tuple, states.tolist()), strict=True))
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
-        return self.table(fmus, [point for point, _ in items], [start for _, start in items])
+        return self.compute_table(
+            fmus, [point for point, _ in items], [start for _, start in items]
+        )
 
 
 def response_variables(
     along: labels.Dims, table: Table, length: NDArray[np.float64], quantities: Mapping[str, Any]
 ) -> dict[str, labels.Variable]:
+    """Return the variables of responses: those asked for, contact, multiplicity and how decided."""
     names = {"xi_rel_max": "x_rel_max", "xi1_max": "x1_max", "xi2_max": "x2_max"}
     numbers = {**table, **{xi: table[x] / length for xi, x in names.items()}}
     contact = "whether permanent contact occurs in the sampled periods"

@@ -20,7 +20,7 @@ from ..lazy import xr
 from ..model import Structure
 from ..running.job import format_brief
 from .labels import Variable, make_dataset, parameter_variable, variable
-from .questions import excitation_numbers, require_delaminated
+from .questions import checked_excitation_numbers, require_delaminated
 
 Floats = NDArray[np.float64]
 THRESHOLD = -2  # its place among the traits
@@ -35,6 +35,7 @@ def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
 
 
 def threshold_variables(structure: Structure, along: str, frequency: Floats) -> dict[str, Variable]:
+    """Return the threshold over frequencies, rad/s, and its minimum between the outer ones."""
     frequency = np.asarray(frequency, dtype=float)
     amplitudes = threshold_amplitudes(structure, frequency)
     event = threshold_event(structure)
@@ -138,8 +139,8 @@ def contact_threshold(
     ('opens', array([0.209, 0.006]))
     """
     require_delaminated(structure, "contact_threshold")
-    given = {"eta": eta, "frequency": frequency}
-    checked = {name: excitation_numbers(name, values) for name, values in given.items()}
+    both = {"eta": eta, "frequency": frequency}
+    checked = {name: checked_excitation_numbers(name, values) for name, values in both.items()}
     arguments = {name: values for name, values in checked.items() if values is not None}
     if len(arguments) != 1:
         raise InputError(

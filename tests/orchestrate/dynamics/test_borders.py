@@ -99,7 +99,7 @@ def test_a_border_begins_where_an_open_structure_touches():
     touching = 2.0 / float(level.threshold_amplitude[0])  # clearance at amplitude 1
     wide = open_structure.replace(clearance=1.2 * touching)
     form = ClosedForm.from_structure(wide, Excitation(**BOX))
-    steady = Point(wide, Excitation(**BOX)).from_faces(form.steady_response(np.zeros(1)))
+    steady = Point(wide, Excitation(**BOX)).states_from_faces(form.steady_response(np.zeros(1)))
     apart = orchestrate.orbit(wide, **BOX, guess=steady[0])  # from rest it impacts: another branch
     assert float(apart.impacts_per_period) == 0.0
     limits = (0.9 * touching, 1.4 * touching)

@@ -255,7 +255,9 @@ def test_images_of_its_points_lie_on_it():
             instance.step(0.0, 2.0 * box.excitation.period)
             image = np.array(instance.get("x1", "x2", "v1", "v2"))
             s = float(part.iterate[i]) + 1.0
-            sides[i] = np.abs(image - job.make_point_function(instance, saddle, -1.0)(s).state).max()
+            sides[i] = np.abs(
+                image - job.make_point_function(instance, saddle, -1.0)(s).state
+            ).max()
     assert len(sides) > 5 and max(sides.values()) < 1e-8
 
 

@@ -34,7 +34,7 @@ def test_each_threshold_of_a_response_that_is_run_on(
     """By deviations after one period in the first stretches, the one before the last, and there."""
     done = [0]
 
-    def respond(points, ends, rule):
+    def simulate(points, ends, rule):
         done[0] += rule.transient + rule.samples
         deviation = early if done[0] < 1e4 else before if done[0] < 2e4 else last
         n = {"multiplicity": [deviation <= rule.tolerance], "nearly": [deviation <= rule.loose]}
@@ -44,7 +44,7 @@ def test_each_threshold_of_a_response_that_is_run_on(
         told.rows = lambda chosen: told
         return told
 
-    monkeypatch.setattr(settling, "response_loop", lambda _: SimpleNamespace(respond=respond))
+    monkeypatch.setattr(settling, "response_loop", lambda _: SimpleNamespace(simulate=simulate))
     monkeypatch.setattr(settling, "responses_from", lambda rows, points, by, *_: [by] * len(points))
     point = Point(PAPER, Excitation.nondimensional(1.0, PAPER))
     (found,) = run_until_settled(None, point, REST, settling_run())

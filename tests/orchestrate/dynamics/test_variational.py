@@ -56,12 +56,14 @@ def after(instance, point, start, periods=1):
 
 def differences(instance, point, start, periods):
     """Central differences of the state after some periods: the matrix through the FMU alone."""
-    step = 1e-7 * np.abs(start / point.scale).max()
+    step = 1e-7 * np.abs(start / point.state_units).max()
     columns = [
         (after(instance, point, start + d, periods) - after(instance, point, start - d, periods))
-        for d in step * np.diag(point.scale)[moving(point)]
+        for d in step * np.diag(point.state_units)[moving(point)]
     ]
-    return np.array(columns).T[moving(point)] / point.scale[moving(point), None] / (2.0 * step)
+    return (
+        np.array(columns).T[moving(point)] / point.state_units[moving(point), None] / (2.0 * step)
+    )
 
 
 def moving(point):
@@ -102,13 +104,18 @@ def test_monodromy_equals_differences_of_the_fmu(instances, structure, eta, push
     start = after(plain, point, REST, 200)
     gap = start[1] - start[0] + structure.gap_offset
     if min(gap, (structure.stroke or np.inf) - gap) < 1e-3 * np.abs(start).max():
-        start = point.scale * [-0.05, 0.05, 1.0, -1.0]  # in contact there is no neighbour beyond
+        start = point.state_units * [
+            -0.05,
+            0.05,
+            1.0,
+            -1.0,
+        ]  # in contact there is no neighbour beyond
     impacts = simulate_nondimensional_impacts(eventful, point, start, 2)
     assert len(impacts.time)
     expected = differences(plain, point, start, 2)
     found = monodromy(impacts, point, 2)
     np.testing.assert_allclose(found[moving(point), moving(point)], expected, atol=2e-5)
-    outside = np.diff(impacts.state[:, :2])[:, 0] > 0.5 * structure.stroke / point.length
+    outside = np.diff(impacts.state[:, :2])[:, 0] > 0.5 * structure.stroke / point.displacement_unit
     assert not structure.stroke or 0 < outside.sum() < len(outside)
 
 

@@ -10,7 +10,7 @@ import pytest
 import orchestrate
 from orchestrate import Excitation, Structure
 from orchestrate.response.questions import Point
-from orchestrate.response.response_loop import traits_of
+from orchestrate.response.response_loop import traits_of_point
 
 from ...fmu.event_driven import Motion
 
@@ -188,9 +188,9 @@ def test_shaken_motions_are_those_of_an_independent_solver(kind):
 def test_impacts_have_to_come_only_where_that_is_known():
     touching = {"frequency": [2.3], "amplitude": 5.0, **QUICK}
     box = Excitation(frequency=2.3, amplitude=5.0)
-    assert traits_of(Point(OWN, box))[-1] == 1.0
+    assert traits_of_point(Point(OWN, box))[-1] == 1.0
     for structure, pushed in ((OWN, box.replace(force1=0.1)), (WALL, box), (KINDS["play"], box)):
-        assert traits_of(Point(structure, pushed))[-1] == 0.0
+        assert traits_of_point(Point(structure, pushed))[-1] == 0.0
     assert (orchestrate.sweep(OWN, **touching).impacts_per_period > 0.0).all()
 
 

@@ -13,7 +13,7 @@ from orchestrate.fmu import OSCILLATOR, EventInstance, begin, find
 from orchestrate.model import Excitation
 from orchestrate.model.outcomes import UNDECIDED
 from orchestrate.response.questions import Point
-from orchestrate.response.response_loop import traits_of
+from orchestrate.response.response_loop import traits_of_point
 
 pytestmark = pytest.mark.usefixtures("exported")
 QUIET = {"progress": False}
@@ -78,6 +78,6 @@ def test_the_level_itself_is_not_exceeded(structure):
     for frequency in np.linspace(0.3, 2.0, 40) * structure.omega:
         level = orchestrate.contact_threshold(structure, frequency=frequency)
         at = Excitation(frequency=frequency, amplitude=float(level.threshold_amplitude[0]))
-        assert not traits_of(Point(structure, at))[-1]
+        assert not traits_of_point(Point(structure, at))[-1]
         above = at.replace(amplitude=at.amplitude * (1.0 + 1e-9))
-        assert traits_of(Point(structure, above))[-1]
+        assert traits_of_point(Point(structure, above))[-1]

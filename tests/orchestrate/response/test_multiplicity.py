@@ -18,9 +18,9 @@ from orchestrate.dynamics.turning_points import stroboscopic_states
 from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, find
 from orchestrate.model import Excitation
 from orchestrate.model.outcomes import IRREGULAR, REPEATED, UNDECIDED
-from orchestrate.response.multiplicity import Decision, apply_rule, find_repetition
+from orchestrate.response.multiplicity import Decision, call_repetition_kernel, find_repetition
 from orchestrate.response.questions import Point
-from orchestrate.response.respond import respond
+from orchestrate.response.respond import simulate_response
 
 from ...draws import draw_structure
 from ...sparing import ordinary
@@ -36,7 +36,7 @@ def decide(samples, frequency=1.0, gap=1.0):
     memory[: repetition.MULTIPLICITY] = count, frequency, gap, TOLERANCE
     memory[repetition.HEAD : repetition.HEAD + samples.size] = samples.ravel()
     repetition.decide(memory, 0.0)
-    compiled = apply_rule("decide_multiplicity", samples, (frequency, gap, TOLERANCE))
+    compiled = call_repetition_kernel("decide_multiplicity", samples, (frequency, gap, TOLERANCE))
     found = Decision(*(int(compiled[i]) for i in (repetition.MULTIPLICITY, repetition.DECIDED)))
     assert found == (memory[repetition.MULTIPLICITY], memory[repetition.DECIDED])
     repetition.repeat(memory, 0.0)
@@ -310,7 +310,7 @@ def denied_by_newton(instance, point, state, periods):
         return True
     orbit = family.orbit(root.unknowns)
     begin = stroboscopic_states(orbit)[0]
-    away = np.abs(begin - point.faces(np.array(state))).max()
+    away = np.abs(begin - point.faces_from_states(np.array(state))).max()
     size = max(np.abs(begin).max(), np.abs(orbit.nodes).max(initial=0.0))
     stable = np.abs(orbit.multipliers()).max() < 1.0
     return (
@@ -329,11 +329,11 @@ def test_where_a_response_has_repeated_it_lies_on_a_stable_orbit_of_as_many_peri
         for _ in range(number):
             structure, eta = draw_structure(rng)
             point = Point(structure, Excitation.nondimensional(eta, structure))
-            response = respond(plain, *point, (0.0,) * 4, 500, samples, TOLERANCE)
+            response = simulate_response(plain, *point, (0.0,) * 4, 500, samples, TOLERANCE)
             size = response.frequency, response.x_rel_max
             n, decided = decide(response.samples, *size)
             if decided == REPEATED:
-                end = respond(plain, *point, response.end, 3000, 4, TOLERANCE).end
+                end = simulate_response(plain, *point, response.end, 3000, 4, TOLERANCE).end
                 assert not denied_by_newton(eventful, point, end, n), (point, n)
                 count += 1
     assert count > 0.65 * number

@@ -7,7 +7,7 @@ import pytest
 
 from orchestrate.fmu import OSCILLATOR, EventInstance, Impacts, Instance, begin, find, sampled
 from orchestrate.model import Excitation, Structure
-from orchestrate.response.equations import absolute_accelerations
+from orchestrate.response.equations import absolute_accelerations_unforced
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import LoopSettings, response_loop
 
@@ -46,7 +46,7 @@ def largest(point: Point, start: np.ndarray, periods: int) -> np.ndarray:
         begin(eventful, structure, excitation, start)
         impacts = eventful.impacts(0.0, end)
     states = np.concatenate([states, impacts.state, states_before(impacts, structure.mu)])
-    signals = np.hstack([states[:, :2], absolute_accelerations(states, structure)])
+    signals = np.hstack([states[:, :2], absolute_accelerations_unforced(states, structure)])
     return np.abs(signals).max(axis=0)
 
 
@@ -58,7 +58,7 @@ def test_against_dense_communication_points(structure, eta):
         transient=60, samples=48, tolerance=1e-2, decides=True, peak_periods=PERIODS
     )
     with Instance(find(OSCILLATOR).path) as instance:
-        results = response_loop(instance).respond([point], [(0.0, 0.0, 0.0, 0.0)], settings)
+        results = response_loop(instance).simulate([point], [(0.0, 0.0, 0.0, 0.0)], settings)
     multiplicity = int(results.counts["multiplicity"][0])
     periods = min(multiplicity, PERIODS) or (PERIODS + 1) // 2
     expected = largest(point, results.states[0, -1], periods)

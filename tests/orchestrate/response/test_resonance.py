@@ -10,9 +10,13 @@ from hypothesis import strategies as st
 
 import orchestrate
 from orchestrate.model import Structure
+from orchestrate.response.maxima_and_jumps import (
+    in_irregular_range,
+    jump_indices,
+    prominent_maximum_indices,
+)
 from orchestrate.response.resonance import ResonanceJob, resonance
 from orchestrate.response.sweep import sweep
-from orchestrate.response.turns_and_jumps import inside_irregular, jump_indices, prominent_maxima
 
 BEAM = Structure.from_file("beam")
 OMEGA = 2.0 * np.pi * np.linspace(8.0, 20.0, 60)
@@ -82,7 +86,7 @@ def test_a_steep_step_that_both_directions_have_is_no_jump():
 
 @given(st.lists(st.booleans(), min_size=1, max_size=40))
 def test_ranges_of_irregular_responses_reach_over_narrow_windows_alone(irregular):
-    inside = inside_irregular(irregular)
+    inside = in_irregular_range(irregular)
     for index, flag in enumerate(inside):
         if flag and not irregular[index]:
             assert any(irregular[max(0, index - 2) : index])
@@ -90,8 +94,8 @@ def test_ranges_of_irregular_responses_reach_over_narrow_windows_alone(irregular
         assert flag or not irregular[index]
     if len(irregular) >= 3:
         window = [True, *[False] * 3, True]
-        assert inside_irregular(window).tolist() == window
-        assert inside_irregular([True, False, False, True]).all()
+        assert in_irregular_range(window).tolist() == window
+        assert in_irregular_range([True, False, False, True]).all()
 
 
 GRID = np.linspace(0.5, 1.5, 401)
@@ -101,13 +105,16 @@ def test_the_peak_of_a_linear_oscillator():
     damping = 0.02
     curve = 1.0 / np.hypot(1.0 - GRID**2, 2.0 * damping * GRID)
     exact = np.sqrt(1.0 - 2.0 * damping**2)
-    assert GRID[prominent_maxima(curve, 0.1)] == pytest.approx([exact], abs=0.0013)
+    assert GRID[prominent_maximum_indices(curve, 0.1)] == pytest.approx([exact], abs=0.0013)
 
 
 def test_ripples_are_no_peaks_and_zeros_do_no_harm():
     ripples = 1.0 + 0.04 * np.sin(80.0 * GRID)
-    assert len(prominent_maxima(ripples, 0.1)) == 0 and len(prominent_maxima(ripples, 0.05)) > 10
-    assert len(prominent_maxima(np.zeros(5), 0.1)) == 0
+    assert (
+        len(prominent_maximum_indices(ripples, 0.1)) == 0
+        and len(prominent_maximum_indices(ripples, 0.05)) > 10
+    )
+    assert len(prominent_maximum_indices(np.zeros(5), 0.1)) == 0
 
 
 def test_a_jump_and_what_is_none():

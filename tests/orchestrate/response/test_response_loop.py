@@ -59,24 +59,24 @@ def test_pauses_change_no_bit(instance, is_chain, monkeypatch):
         **SETTINGS,
     )
     chosen = starts[1:2] if is_chain else starts
-    expected = response_loop(instance).respond(some, chosen, settings)
+    expected = response_loop(instance).simulate(some, chosen, settings)
     assert np.any(expected.counts["multiplicity"]) and np.any(expected.impacts)
     for work in (10, 200):
         monkeypatch.setattr("orchestrate.response.response_loop.MAX_WORK", work)
-        assert bits(response_loop(instance).respond(some, chosen, settings)) == bits(expected)
+        assert bits(response_loop(instance).simulate(some, chosen, settings)) == bits(expected)
 
 
 def test_a_chain_goes_on_from_the_end_before_it_with_the_same_gap(instance):
     some, gap = list(points(3)), 0.5
     settings = LoopSettings(transient=30, is_chain=True, chain_gap=gap, **SETTINGS)
-    chain, start = response_loop(instance).respond(some, [(0.0, 2.0, 0.1, 0.0)], settings), None
+    chain, start = response_loop(instance).simulate(some, [(0.0, 2.0, 0.1, 0.0)], settings), None
     assert len({point.structure.gap_offset for point in some}) > 3
     for i, point in enumerate(some):
         start = chain.ends[i - 1].copy() if i else np.array([0.0, 2.0, 0.1, 0.0])
         offset = point.structure.gap_offset
         start[1] = max(start[1] + (gap - offset if np.any(start) else 0.0), start[0] - offset)
         alone = LoopSettings(transient=30, **SETTINGS)
-        found = response_loop(instance).respond([point], [start], alone)
+        found = response_loop(instance).simulate([point], [start], alone)
         assert found.states.tobytes() == chain.states[i].tobytes(), i
         gap, speeds = offset, chain.ends[i, 2:]
         digit = np.ldexp(1.0, np.frexp(np.abs(speeds).max())[1] - 44)  # ends are rounded to 44 bits
@@ -88,12 +88,12 @@ def test_a_chain_goes_on_from_the_end_before_it_with_the_same_gap(instance):
 def test_every_form_runs_through_the_same_loop(instance, form):
     some = list(points(8, 4))
     settings = LoopSettings(transient=20, is_chain=True, **{**SETTINGS, "samples": 9})
-    expected = response_loop(instance).respond(some, np.zeros((1, 4)), settings)
+    expected = response_loop(instance).simulate(some, np.zeros((1, 4)), settings)
     with Instance(find(OSCILLATOR, form).path) as other:
-        found = response_loop(other).respond(some, np.zeros((1, 4)), settings)
+        found = response_loop(other).simulate(some, np.zeros((1, 4)), settings)
         assert bits(found) == bits(expected)
         with pytest.raises(FmuError, match="x1_start = nan"):
-            response_loop(other).respond(some[:1], np.full((1, 4), np.nan), settings)
+            response_loop(other).simulate(some[:1], np.full((1, 4), np.nan), settings)
 
 
 @pytest.mark.parametrize("same", [0.3, 1e-2, 1e-3, 1e-9])
@@ -112,7 +112,7 @@ def test_a_response_ends_where_it_comes_near_a_known_motion(instance, same):
     pairs = enumerate(zip([np.inf, *away], away, strict=False))
     looks = [look for look, (before, now) in pairs if before < same and now < before]
     settings = LoopSettings(transient=400, samples=8, same=same, known=(far, orbit))
-    results = response_loop(instance).respond([point] * 2, [(0.0, 1.0, 0.0, 0.0)] * 2, settings)
+    results = response_loop(instance).simulate([point] * 2, [(0.0, 1.0, 0.0, 0.0)] * 2, settings)
     assert results.counts["reached"].tolist() == [3 if looks else 0] * 2  # of all states
     assert bool(looks) == (same > 1e-8)
     if looks:

@@ -72,7 +72,7 @@ QUESTIONS: Mapping[str, tuple[int, Ask]] = {  # with the items of a chunk
         asked(orchestrate.resonance_levels, PRESSED, frequency=[250.0], level=[0.1], **SHORT),
     ),
     "SweepJob": (2, asked(orchestrate.sweep, UNIT, **ETAS, **SHORT, direction="both")),
-    "RunOnJob": (2, asked(orchestrate.sweep, UNIT, **ETAS, **SHORT, direction="given")),
+    "IndependentStartsJob": (2, asked(orchestrate.sweep, UNIT, **ETAS, **SHORT, direction="given")),
     "MapJob": (2, asked(orchestrate.map, UNIT, eta=[1.0, 1.1], e=[0.3, 0.7], transient=20)),
     "LyapunovJob": (2, asked(orchestrate.lyapunov, UNIT, **ETAS, transient=20, periods=100)),
     "AttractorsJob": (

@@ -10,7 +10,7 @@ WINDOW = 3  # values: the least that can show a maximum of their own
 NEIGHBOURS, JUMP_FACTOR = 2, 3.0  # of the curve's own slope, which a jump must stand out from
 
 
-def prominent_maxima(curve: ArrayLike, prominence: float) -> Rows:
+def prominent_maximum_indices(curve: ArrayLike, prominence: float) -> Rows:
     """Return the indices of a curve's inner maxima whose relative prominence is enough."""
     from scipy.signal import find_peaks
 
@@ -20,7 +20,7 @@ def prominent_maxima(curve: ArrayLike, prominence: float) -> Rows:
     return indices
 
 
-def inside_irregular(irregular: ArrayLike) -> NDArray[np.bool_]:
+def in_irregular_range(irregular: ArrayLike) -> NDArray[np.bool_]:
     """Return, for each value of a curve, whether it lies in a range of irregular responses."""
     from scipy.ndimage import binary_closing
 
