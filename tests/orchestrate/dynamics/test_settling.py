@@ -41,7 +41,7 @@ def test_each_threshold_of_a_response_that_is_run_on(
         n["reached"] = [0]
         counts = {name: np.array(one, dtype=int) for name, one in n.items()}
         told = SimpleNamespace(counts=counts, deviations=np.array([deviation]), ends=ends)
-        told.rows = lambda chosen: told
+        told.select = lambda chosen: told
         return told
 
     monkeypatch.setattr(settling, "response_loop", lambda _: SimpleNamespace(simulate=simulate))
