@@ -13,8 +13,8 @@ from filelock import FileLock
 from fmu_src.export import forms
 from fmu_src.export.errors import CannotExport
 from orchestrate.errors import InputError
-from orchestrate.fmu.c_library import SOURCES, library_path
-from orchestrate.fmu.webassembly import web_kernel
+from orchestrate.fmu.c_library import SOURCES, find_or_compile_library
+from orchestrate.fmu.webassembly import find_or_compile_web_kernel
 
 ROOT = Path(__file__).resolve().parents[1]
 BUILD = ROOT / "build"
@@ -44,7 +44,7 @@ def refresh(build):
         made += [refresh_library(source, build) for source in SOURCES]
     reasons = {place: reason for each in made for place, reason in each.items()}
     try:
-        web_kernel(build)
+        find_or_compile_web_kernel(build)
     except InputError as reason:
         reasons["wasm"] = CannotExport(str(reason))
     return reasons
@@ -75,7 +75,7 @@ def refresh_model(name, build):
 def refresh_library(source, build):
     """The library of one loop; returns as :func:`refresh`."""
     try:
-        library_path(source, build)
+        find_or_compile_library(source, build)
     except InputError as reason:
         return {f"libraries/{source.stem}": reason}
     return {}

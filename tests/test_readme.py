@@ -11,7 +11,7 @@ from fmu_src.export import forms
 from fmu_src.export.sources import load_model
 from fmu_src.version import VERSION
 from orchestrate import cli
-from orchestrate.fmu import find
+from orchestrate.fmu import find_or_export
 from tools import assets
 
 from .exports import BUILD
@@ -50,7 +50,7 @@ def test_what_it_points_to_is_there():
 
 
 def test_the_fmu_of_the_example_is_one_that_the_first_command_makes():
-    made = inspect.signature(find).parameters["form"].default
+    made = inspect.signature(find_or_export).parameters["form"].default
     (block,) = (part for part in re.findall(r"```python\n(.*?)```", README, re.S) if "fmpy" in part)
     assert re.findall(r'"build/([\w-]+)/', block) == [made]
 

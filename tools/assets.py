@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from orchestrate.fmu import describe, find
+from orchestrate.fmu import describe, find_or_export
 from orchestrate.show import figure_files
 
 from .pictures import electrodynamic_shaker, icon, oscillator, shaker
@@ -115,7 +115,7 @@ def draw_documentation(
 def main() -> None:
     # all FMUs first: what is written below belongs to their sources
     names = "fmi3", "fmi2-python"
-    forms = [[find(each.model, name).path for name in names] for each in REFERENCES]
+    forms = [[find_or_export(each.model, name).path for name in names] for each in REFERENCES]
     for reference, (fmu, with_tabulated_fields) in zip(REFERENCES, forms, strict=True):
         rows = reference_rows(reference, fmu)
         write_reference(reference, rows)

@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from orchestrate.constants import TURN
-from orchestrate.fmu import OSCILLATOR, Instance, find
+from orchestrate.fmu import OSCILLATOR, Instance, find_or_export
 from orchestrate.model import Structure
 from orchestrate.response.resonance import resonance
 
@@ -203,7 +203,7 @@ def compare_versions(before: Path, scale: float, rounds: int, only: str) -> None
 
 def compare_solvers(count: int) -> None:
     """Print times per period and impact over eta, and how much slower other solvers are."""
-    native, python = find(OSCILLATOR).path, find(OSCILLATOR, "fmi2-python").path
+    native, python = find_or_export(OSCILLATOR).path, find_or_export(OSCILLATOR, "fmi2-python").path
     print("".join(f"{name:>12}" for name in COLUMNS), "  (the last two: times the native FMU)")
     seconds, impacts = 0.0, 0
     for eta in ETAS:

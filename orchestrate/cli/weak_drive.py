@@ -90,7 +90,7 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         question: Keywords,
         files: Mapping[str, ResultFiles],
     ) -> dict[str, xr.Dataset]:
-        from ..fmu import finder
+        from ..fmu import make_fmu_finder
         from ..running.options import RunOptions
         from ..running.runner import compute_into_folder
         from ..running.store import load_result
@@ -100,7 +100,7 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
             for state, one in states.items()
         ]
         running = self.running_keywords()
-        compute_into_folder(jobs, self.output, RunOptions.from_keywords(running), finder(running))
+        compute_into_folder(jobs, self.output, RunOptions.from_keywords(running), make_fmu_finder(running))
         self.job, self.stationary = jobs[0], None
         if self.branches:
             delaminated = next(iter(states.values())).as_delaminated()
@@ -143,10 +143,13 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
             files.write_pictures(draw, "jumps")
 
     def write_ssp_package(self, path: Path, motor: Drive, job: CoupleJob) -> Path:
-        from ..fmu import find
+        from ..fmu import find_or_export
 
         own = fmus_by_model(self.fmu)
-        fmus = [find(name, "fmi2", self.build_folder, own.get(name)).path for name in job.models]
+        fmus = [
+            find_or_export(name, "fmi2", self.build_folder, own.get(name)).path
+            for name in job.models
+        ]
         start = {"voltage": job.schedule.voltage(0.0), "speed_start": job.speed_start}
         more: Any = {**start, "fmus": fmus, "version": self.ssp_version}
         return orchestrate.write_ssp(path, job.structure, motor, **more)

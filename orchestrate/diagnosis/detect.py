@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..fmu import finder
+from ..fmu import make_fmu_finder
 from ..laboratory.analysis.channels import Channels
 from ..laboratory.record_checks import clipped_share
 from ..lazy import Unpack, xr
@@ -148,7 +148,7 @@ def detect(
     'no opening seen'
     """
     rest = checked_free_parameters(free), participation, checked_settings(settings)
-    return compute_dataset(beam_job(record, guess, *rest), running, finder(running))
+    return compute_dataset(beam_job(record, guess, *rest), running, make_fmu_finder(running))
 
 
 def detect_all(
@@ -198,7 +198,9 @@ def detect_all(
         raise InputError("records: expected one record or more, by names")
     rest = guess, checked_free_parameters(free), participation, checked_settings(settings)
     jobs = [named_beam_job(name, record, *rest) for name, record in records.items()]
-    return dict(zip(records, compute_datasets(jobs, running, finder(running)), strict=True))
+    return dict(
+        zip(records, compute_datasets(jobs, running, make_fmu_finder(running)), strict=True)
+    )
 
 
 def named_beam_job(name: str, record: xr.Dataset | Sequence[xr.Dataset], *rest: Any) -> DetectJob:

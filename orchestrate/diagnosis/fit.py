@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..fmu import finder
+from ..fmu import make_fmu_finder
 from ..laboratory.analysis.channels import BOX
 from ..laboratory.pieces import Floats
 from ..lazy import Unpack, xr
@@ -149,7 +149,7 @@ def fit(
         kind=kind,
     )
     check_tone_determines_fit(job)
-    return compute_dataset(job, running, finder(running))
+    return compute_dataset(job, running, make_fmu_finder(running))
 
 
 def checked_free_parameters(free: Sequence[str]) -> tuple[str, ...]:

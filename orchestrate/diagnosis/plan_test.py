@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from ..constants import GRAVITY
 from ..errors import InputError
-from ..fmu import finder
+from ..fmu import make_fmu_finder
 from ..laboratory.analysis.channels import BOX, Channels, analysis_attributes
 from ..laboratory.pieces import Floats
 from ..laboratory.sensors import CHANNELS, Sensor, measure, sensors_by_channel
@@ -153,7 +153,7 @@ def plan_test(
         duration=sweep_duration(sound.f, sound.zeta, first, last),
         reserve=checked_range("reserve", reserve, low=1.0, high=1e3),
     )
-    return compute_dataset(job, running, finder(running))
+    return compute_dataset(job, running, make_fmu_finder(running))
 
 
 def default_sweep_range(structure: Structure) -> tuple[float, float]:

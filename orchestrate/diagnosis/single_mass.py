@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..fmu.c_library import loaded_loop
+from ..fmu.c_library import load_loop
 from ..laboratory.pieces import Floats
 
 # Angle of the natural vibration in a step, rad: its amplitude errs by 1e-7 in a period
@@ -53,7 +53,7 @@ class SingleMass:
         parts = max(1, math.ceil(2.0 * math.pi * stiffest * step / MAX_STEP_ANGLE))
         displacement = np.full(len(cubics) + 1, np.nan)
         mass, cubics = np.array(self.coefficients()), np.ascontiguousarray(cubics)
-        run = loaded_loop("single_mass").displace
+        run = load_loop("single_mass").displace
         run.argtypes = [c_void_p, c_void_p, c_size_t, c_double, c_int, c_double, c_void_p]
         places = mass.ctypes.data, cubics.ctypes.data
         run(*places, len(cubics), step, parts, bound, displacement.ctypes.data)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
-from ..fmu import OSCILLATOR, REST, EventInstance, Instance, begin, sampled
+from ..fmu import OSCILLATOR, REST, EventInstance, Instance, sample_evenly, start_motion
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Numbers, Positive, checked_numbers, whole
@@ -248,9 +248,9 @@ def run_from_rest(instance: Instance, point: Point, settings: SettlingSettings) 
     (settled,) = run_until_settled(instance, point, REST, settings)
     assert isinstance(settled, SettledResponse), "no motion is known"
     response = settled.response
-    begin(instance, *point, response.end)
+    start_motion(instance, *point, response.end)
     span = 8 * point.excitation.period
-    states = sampled(instance, 0.0, span, 512)
+    states = sample_evenly(instance, 0.0, span, 512)
     displacement = float(np.abs(states[:, :2]).max())
     return ResponseFromRest(np.array(response.end), displacement, response.x_rel_max)
 

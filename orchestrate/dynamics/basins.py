@@ -11,7 +11,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
 from ..errors import NOT_NUMBERS, InputError
-from ..fmu import OSCILLATOR, STATE, EventInstance, Instance, begin, finder, stroboscopic_samples
+from ..fmu import (
+    OSCILLATOR,
+    STATE,
+    EventInstance,
+    Instance,
+    make_fmu_finder,
+    sample_stroboscopically,
+    start_motion,
+)
 from ..lazy import Unpack, xr
 from ..model import Excitation, Structure
 from ..model.arguments import checked_integer
@@ -200,7 +208,7 @@ def run_to_phase_zero(
     if left == 0.0:
         return state
     structure, excitation = point
-    begin(instance, structure, excitation.replace(phase=phase), state)
+    start_motion(instance, structure, excitation.replace(phase=phase), state)
     instance.step(0.0, left / excitation.frequency)
     return tuple(instance.get(*STATE))
 
@@ -363,10 +371,12 @@ def find_attractors_from_few_starts(
     search |= {name: getattr(excitation, name) for name in box}
     known = attractors(structure, starts=24, **search, jobs=1, progress=False).isel(frequency=0)
     states, samples = tuple(map(tuple, known.state.values.tolist())), []
-    with Instance(finder(running)(OSCILLATOR).path) as instance:
+    with Instance(make_fmu_finder(running)(OSCILLATOR).path) as instance:
         for state, n in zip(states, known.multiplicity.values, strict=True):
-            begin(instance, *point, state)
+            start_motion(instance, *point, state)
             periods = int(n) or settings.irregular_samples
-            samples.append(stroboscopic_samples(instance, excitation.period, 0, periods)[0].copy())
+            samples.append(
+                sample_stroboscopically(instance, excitation.period, 0, periods)[0].copy()
+            )
     gap = float(known.xi_rel_max.max()) * point.displacement_unit or point.displacement_unit
     return KnownAttractors(states, np.concatenate(samples), gap, excitation.frequency)

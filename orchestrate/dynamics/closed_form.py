@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from fmu_src.kernels import orbits
 
 from ..constants import TURN
-from ..fmu.c_library import loaded_loop
+from ..fmu.c_library import load_loop
 from ..model import Excitation, Structure
 
 Floats = NDArray[np.float64]
@@ -157,7 +157,7 @@ class ClosedForm:
         memory[orbits.ROWS : orbits.TABLE] = count, span
         for i, column in enumerate(columns):
             memory[orbits.TABLE + i : first : len(columns)] = column
-        getattr(loaded_loop("orbits"), name)(c_void_p(memory.ctypes.data))
+        getattr(load_loop("orbits"), name)(c_void_p(memory.ctypes.data))
         return memory[first : first + width * count].reshape(-1, width)
 
     def flow_matrices(self, time: Floats, mode: Modes = FREE) -> Floats:

@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
 from ..errors import FmuError, InputError
-from ..fmu import STATE, EventInstance, Instance, begin, stroboscopic_samples
+from ..fmu import STATE, EventInstance, Instance, sample_stroboscopically, start_motion
 from ..model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from ..response.questions import Point
 from ..response.respond import Response, simulate_response
@@ -116,12 +116,12 @@ class MotionDecider:
 
     def find_periods_at_other_phase(self, response: Response) -> list[int]:
         """Simulate on, sampled at another phase; return periods after which it may repeat there."""
-        begin(self.plain, *self.point, response.end)
+        start_motion(self.plain, *self.point, response.end)
         self.plain.step(0.0, OTHER_PHASE / self.point.excitation.frequency)
         state = self.plain.get(*STATE)
         shifted = self.point.excitation.replace(phase=OTHER_PHASE)
-        begin(self.plain, self.point.structure, shifted, state)
-        states, gap = stroboscopic_samples(
+        start_motion(self.plain, self.point.structure, shifted, state)
+        states, gap = sample_stroboscopically(
             self.plain, self.point.excitation.period, 0, self.settings.irregular_samples
         )
         sampled = replace(response, samples=states, x_rel_max=gap)
@@ -179,7 +179,7 @@ class MotionDecider:
     def converges_to(self, state: ArrayLike, motion: SettledMotion, n: int) -> bool:
         """Return whether the response from a state, of ``n`` periods so far, comes to an orbit."""
         excitation, periods = self.point.excitation, motion.multiplicity
-        begin(self.plain, *self.point, state)
+        start_motion(self.plain, *self.point, state)
         if motion.free_phase > 0.0:
             self.plain.step(0.0, motion.free_phase / excitation.frequency)
         state = self.plain.get(*STATE)
@@ -192,7 +192,7 @@ class MotionDecider:
         whole = n // math.gcd(n, periods)  # what repeats after n periods is as near again after it
         turns = math.ceil(turns / whole) * whole
         shifted = excitation.replace(phase=motion.free_phase % TURN)
-        begin(self.plain, self.point.structure, shifted, state)
+        start_motion(self.plain, self.point.structure, shifted, state)
         self.plain.step(0.0, turns * periods * excitation.period)
         last, after = motion.nearest_state_at_free_phase(self.plain.get(*STATE))
         return last == first and after <= max(0.5 * (1.0 + rate**turns) * before, ROUNDING)
@@ -226,18 +226,18 @@ class MotionDecider:
         instance, frequency = self.eventful, self.point.excitation.frequency
         assert instance is not None
         form, span = self.system.closed_form(self.values), periods * self.point.excitation.period
-        begin(instance, *self.point, state)
-        times = instance.impacts(0.0, span).time
+        start_motion(instance, *self.point, state)
+        times = instance.record_impacts(0.0, span).time
         if not len(times):
             return (ImpactSequence(periods, ()), np.zeros((0, 4))), 0.0
         stretches = np.diff(np.append(times, times[0] + span))
         longest = int(stretches.argmax())
-        begun = float(times[longest] + 0.5 * stretches[longest]) % span
-        begin(instance, *self.point, state)
-        if begun > 0.0:
-            instance.impacts(0.0, begun)
-        impacts = instance.impacts(begun, begun + span)
-        return guess_from_impacts(impacts, self.point, form, periods), frequency * begun
+        free_time = float(times[longest] + 0.5 * stretches[longest]) % span
+        start_motion(instance, *self.point, state)
+        if free_time > 0.0:
+            instance.record_impacts(0.0, free_time)
+        impacts = instance.record_impacts(free_time, free_time + span)
+        return guess_from_impacts(impacts, self.point, form, periods), frequency * free_time
 
     def continue_orbit(self, motion: SettledMotion) -> SettledMotion | None:
         """Continue an orbit of a neighbouring value to this one; None if not stable here."""
@@ -257,7 +257,7 @@ class MotionDecider:
         excitation = self.point.excitation
         shifted = excitation.replace(phase=motion.free_phase % TURN)
         try:
-            begin(self.plain, self.point.structure, shifted, motion.states_at_free_phase[0])
+            start_motion(self.plain, self.point.structure, shifted, motion.states_at_free_phase[0])
         except (FmuError, InputError):  # in contact the masses overlap within rounding
             return False
         self.plain.step(0.0, motion.multiplicity * excitation.period)
@@ -268,16 +268,16 @@ class MotionDecider:
         # by `gamma` chattering may have an impact more or less: a root that is no motion of the FMU
         instance, orbit, nearest = self.eventful, motion.orbit, motion.nearest_state_at_free_phase
         assert instance is not None and orbit is not None, "no orbit"
-        begun = motion.free_phase / self.point.excitation.frequency
-        end = begun + motion.multiplicity * self.point.excitation.period
+        free_time = motion.free_phase / self.point.excitation.frequency
+        end = free_time + motion.multiplicity * self.point.excitation.period
         try:
-            begin(instance, *self.point, motion.states[0])
+            start_motion(instance, *self.point, motion.states[0])
         except (FmuError, InputError):  # in contact the masses overlap within rounding
             return False
-        if begun > 0.0:
-            instance.impacts(0.0, begun)
+        if free_time > 0.0:
+            instance.record_impacts(0.0, free_time)
         first = nearest(instance.read(*STATE))[0]
-        impacts = len(instance.impacts(begun, end).time)
+        impacts = len(instance.record_impacts(free_time, end).time)
         last, away = nearest(instance.read(*STATE))
         return impacts == orbit.sequence.impacts and last == first and away < self.settings.returns
 
@@ -306,7 +306,7 @@ def count_impacts_starting_in_pause(
     instance: Instance, point: Point, state: ArrayLike, periods: int
 ) -> int:
     """Count a response's impacts over some periods, from its longest time without impacts on."""
-    begin(instance, *point, state)
+    start_motion(instance, *point, state)
     width = point.excitation.period / PIECES
     counts: list[int] = []
     for piece in range(periods * PIECES):
@@ -314,7 +314,7 @@ def count_impacts_starting_in_pause(
         counts += instance.get("impact_count")
     each = np.diff([0, *counts])
     middle = middle_of_longest_run(each == 0)
-    begin(instance, *point, state)
+    start_motion(instance, *point, state)
     first = (middle + 0.5) * width
     instance.step(0.0, first)
     (before,) = instance.get("impact_count")

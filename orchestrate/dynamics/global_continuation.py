@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..fmu import EventInstance, Instance, begin, stroboscopic_samples
+from ..fmu import EventInstance, Instance, sample_stroboscopically, start_motion
 from ..fmu.description import describe
 from ..model.outcomes import IRREGULAR, ORBIT, UNDECIDED
 from ..response.questions import Point
@@ -81,8 +81,10 @@ class AttractorsAtValue:
         if known is None and decided == ORBIT:
             known = decider.find_stable_motion_near(state, n)
         if known is None:
-            begin(decider.plain, *decider.point, state)
-            states, _ = stroboscopic_samples(decider.plain, decider.point.excitation.period, 0, n)
+            start_motion(decider.plain, *decider.point, state)
+            states, _ = sample_stroboscopically(
+                decider.plain, decider.point.excitation.period, 0, n
+            )
             gap = float(features[2]) * decider.point.displacement_unit
             known = SettledMotion(decider.point, decided, states.copy(), n, float(features[1]), gap)
             decider.known.append(known)

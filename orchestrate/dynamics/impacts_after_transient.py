@@ -9,7 +9,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..fmu import OSCILLATOR, STATE, EventInstance, Impacts, Instance, begin
+from ..fmu import OSCILLATOR, STATE, EventInstance, Impacts, Instance, start_motion
 from ..response.questions import Point, StartedSeriesQuestion, State
 from ..running.job import FAMILY, Fmus, Table
 from .variational import nondimensional_impacts
@@ -40,7 +40,7 @@ class ImpactsQuestion(StartedSeriesQuestion, ABC):
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             for item in items:
                 start = state_after_transient(plain, item, self.transient)
-                begin(eventful, *item.point, start)
+                start_motion(eventful, *item.point, start)
                 (first,), state = eventful.get("in_contact"), tuple(eventful.get(*STATE))
                 impacts = simulate_nondimensional_impacts(eventful, item.point, start, self.periods)
                 (last,) = eventful.get("in_contact")
@@ -56,7 +56,7 @@ def state_after_transient(instance: Instance, item: FollowedResponse, transient:
     """Run a response from its start for some periods; return its state at phase 0."""
     if not transient:
         return item.start
-    begin(instance, *item.point, item.start)
+    start_motion(instance, *item.point, item.start)
     instance.step(0.0, transient * item.point.excitation.period)
     return tuple(instance.get(*STATE))
 
@@ -65,5 +65,7 @@ def simulate_nondimensional_impacts(
     instance: EventInstance, point: Point, start: ArrayLike, periods: int
 ) -> Impacts:
     """Run from a state at phase 0 for some periods; return the impacts in the paper's units."""
-    begin(instance, *point, start)
-    return nondimensional_impacts(instance.impacts(0.0, periods * point.excitation.period), point)
+    start_motion(instance, *point, start)
+    return nondimensional_impacts(
+        instance.record_impacts(0.0, periods * point.excitation.period), point
+    )

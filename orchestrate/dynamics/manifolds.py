@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
-from ..fmu import OSCILLATOR, Instance, begin
+from ..fmu import OSCILLATOR, Instance, start_motion
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Positive, checked_number, whole
@@ -178,7 +178,7 @@ class ManifoldJob(SingleOrbitQuestion):
         time = saddle.periods_per_return * point.excitation.period
 
         def run(faces: Floats, returns: int) -> tuple[Floats, Floats]:
-            begin(instance, *point, point.states_from_faces(faces.copy()))
+            start_motion(instance, *point, point.states_from_faces(faces.copy()))
             if returns:
                 instance.step(0.0, returns * time)
             values = np.array(instance.get("x1", "x2", "v1", "v2", *COUNTS), dtype=float)

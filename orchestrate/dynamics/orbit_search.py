@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from ..constants import TURN
-from ..fmu import EventInstance, Impacts, begin
+from ..fmu import EventInstance, Impacts, start_motion
 from ..response.questions import Point
 from .closed_form import INNER, OUTER, ClosedForm, Floats
 from .continuation import SOLVER_ERRORS, NoConvergenceError, Root, newton_correct, unit_vector
@@ -38,8 +38,8 @@ def simulate_guess(
     instance: EventInstance, point: Point, form: ClosedForm, state: Floats, periods: int
 ) -> Guess:
     """Run the FMU from a state at phase 0 over some periods; return an orbit guess of them."""
-    begin(instance, *point, state)
-    impacts = instance.impacts(0.0, periods * point.excitation.period)
+    start_motion(instance, *point, state)
+    impacts = instance.record_impacts(0.0, periods * point.excitation.period)
     return guess_from_impacts(impacts, point, form, periods)
 
 
@@ -97,11 +97,11 @@ def close_returns(
 ) -> Iterator[tuple[Floats, float]]:
     """Yield stroboscopic states that nearly repeat after some periods, the closest return first."""
     period = point.excitation.period
-    begin(instance, *point, np.zeros(4))
-    instance.impacts(0.0, transient * period)
+    start_motion(instance, *point, np.zeros(4))
+    instance.record_impacts(0.0, transient * period)
     states = np.empty((max_periods, 4))
     for i, state in enumerate(states):
-        instance.impacts((transient + i) * period, (transient + i + 1) * period)
+        instance.record_impacts((transient + i) * period, (transient + i + 1) * period)
         state[:] = instance.read("x1", "x2", "v1", "v2")
     scale = np.maximum(np.abs(states).max(axis=0), 1e-300)
     distance = (np.abs(states[periods:] - states[:-periods]) / scale).max(axis=1)
@@ -170,9 +170,9 @@ def compare_with_fmu(
     """
     point = setting.point(values)
     state = stroboscopic_states(orbit)[0]
-    begin(instance, *point, point.states_from_faces(state))
+    start_motion(instance, *point, point.states_from_faces(state))
     end = orbit.sequence.periods * point.excitation.period
-    observed = instance.impacts(0.0, end)
+    observed = instance.record_impacts(0.0, end)
     after = point.faces_from_states(instance.read("x1", "x2", "v1", "v2"))
     away = float(np.abs(after - state).max())
     nodes, first = rotate_to_phase_zero(orbit.nodes, orbit.sequence.periods)

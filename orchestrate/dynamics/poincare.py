@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
-from ..fmu import OSCILLATOR, EventInstance, Impacts, Instance, begin, gap_between
+from ..fmu import OSCILLATOR, EventInstance, Impacts, Instance, gaps_of_states, start_motion
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Transient, checked_number
@@ -49,13 +49,16 @@ class PoincareJob(OneMotionQuestion):
                 )
                 return {"time": times, "rows": simulate_to_times(plain, point, start, times)}
             with EventInstance(fmus[OSCILLATOR]) as eventful:
-                begin(eventful, *point, start)
-                impacts = eventful.impacts(0.0, self.periods * period)
+                start_motion(eventful, *point, start)
+                impacts = eventful.record_impacts(0.0, self.periods * period)
             if self.at == "releases":
                 times = release_times(impacts, point, self.periods * period)
                 return {"time": times, "rows": simulate_to_times(plain, point, start, times)}
         rate = np.where(impacts.sticks, 0.0, impacts.state[:, 3] - impacts.state[:, 2])
-        gap, stroke = gap_between(impacts.state, point.structure.gap_offset), self.structure.stroke
+        gap, stroke = (
+            gaps_of_states(impacts.state, point.structure.gap_offset),
+            self.structure.stroke,
+        )
         gap = np.where(gap > 0.5 * stroke, stroke, 0.0)  # 0 without a stroke
         rows = np.column_stack([impacts.state, gap, rate])
         more = {"impact_velocity": impacts.closing, "sticks": impacts.sticks}
@@ -84,7 +87,7 @@ class PoincareJob(OneMotionQuestion):
 
 def simulate_to_times(instance: Instance, point: Point, start: ArrayLike, times: Floats) -> Floats:
     """Simulate from phase 0; return displacements, velocities and gap at times in s, (n, 6)."""
-    begin(instance, *point, start)
+    start_motion(instance, *point, start)
     rows, now = np.empty((len(times), len(COLUMNS))), 0.0
     for row, time in zip(rows, times.tolist(), strict=True):
         if time > now:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
-from ..fmu import gap_between
+from ..fmu import gaps_of_states
 from ..model.outcomes import ORBIT
 from ..response.multiplicity import nearest_state
 from ..response.questions import Point
@@ -68,7 +68,8 @@ class SettledMotion:
     def features(self) -> list[float]:
         """Return features that do not depend on the phase: period, impacts, gap statistics."""
         gaps = (
-            gap_between(self.states, self.point.structure.gap_offset) / self.point.displacement_unit
+            gaps_of_states(self.states, self.point.structure.gap_offset)
+            / self.point.displacement_unit
         )
         means = [float(gaps.mean()), float(gaps.std())]
         gap = self.gap / self.point.displacement_unit

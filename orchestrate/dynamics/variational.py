@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..fmu import Impacts
-from ..fmu.c_library import loaded_loop
+from ..fmu.c_library import load_loop
 from ..fmu.oscillator import DEVIATING
 from ..response.questions import Point
 from .closed_form import ClosedForm, Floats
@@ -23,7 +23,7 @@ from .closed_form import ClosedForm, Floats
 @functools.cache
 def exponent_library() -> Any:
     """Return the compiled loop of deviations and exponents, with the types of its functions."""
-    loaded, table = loaded_loop("exponent"), [c_void_p, c_size_t]
+    loaded, table = load_loop("exponent"), [c_void_p, c_size_t]
     loaded.exponent_size.argtypes, loaded.exponent_size.restype = [c_size_t], c_size_t
     span = [c_void_p, *table, c_double]
     loaded.find_deviations.argtypes, loaded.find_deviations.restype = [*span, c_void_p], c_size_t

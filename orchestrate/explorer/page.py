@@ -18,7 +18,7 @@ from ..dynamics.settling import AttractorSettings
 from ..errors import InputError
 from ..files import make_writable_folder, write_atomically
 from ..fmu.channel import StepAnswer
-from ..fmu.webassembly import WebKernel, loop_tables, numbers_in, web_kernel
+from ..fmu.webassembly import WebKernel, find_or_compile_web_kernel, loop_tables, numbers_in
 from ..lazy import xr
 from ..model import Drive, Structure
 from ..model.ranges import EXCITATION, PUSHES, STRUCTURE
@@ -74,7 +74,10 @@ def explore(
             "that is free, or such a page to be replaced"
         )
     make_writable_folder(path.parent)
-    kernel, drawn = web_kernel(build_folder), branch_json(branches) | record_json(record)
+    kernel, drawn = (
+        find_or_compile_web_kernel(build_folder),
+        branch_json(branches) | record_json(record),
+    )
     text = render_page(chosen, shown_in(asked, chosen.level), drawn, kernel)
     return write_atomically(path, lambda place: place.write_text(text, encoding="utf-8"))
 

@@ -13,14 +13,13 @@ module               idea
 :mod:`.events`       a motion computed impact by impact, under inputs given as cubics
 :mod:`.oscillator`   an oscillator for its loops: starts, states at equal times
 :mod:`.impacts`      the impacts of a motion
-:mod:`.begin`        start of a motion
+:mod:`.start`        start of a motion; gaps of states
 :mod:`.channel`      fast calls on one instance, for co-simulation masters
 :mod:`.c_library`    C libraries of the package: found, or compiled
 :mod:`.webassembly`  the kernels for web pages: found, or compiled
 ===================  =================================================================
 """
 
-from .begin import REST, begin, four_numbers, gap_between
 from .c_library import build_libraries
 from .channel import Channel
 from .description import Description, describe
@@ -30,9 +29,9 @@ from .exported import (
     MODELS,
     PLAIN_FORMS,
     build,
-    find,
-    finder,
+    find_or_export,
     is_current_and_trusted,
+    make_fmu_finder,
     sources_of,
 )
 from .impacts import STATE, Impacts
@@ -42,10 +41,11 @@ from .oscillator import (
     START_VALUES,
     Oscillator,
     respond_library,
-    sampled,
-    stroboscopic_samples,
-    traits,
+    sample_evenly,
+    sample_stroboscopically,
+    traits_for_loops,
 )
+from .start import REST, checked_four_numbers, gaps_of_states, start_motion
 from .webassembly import build_web_kernels
 
 __all__ = [
@@ -68,20 +68,20 @@ __all__ = [
     "Instance",
     "Played",
     "Player",
-    "begin",
+    "start_motion",
     "build",
     "build_libraries",
     "build_web_kernels",
     "describe",
-    "find",
-    "finder",
-    "four_numbers",
+    "find_or_export",
+    "make_fmu_finder",
+    "checked_four_numbers",
     "function_addresses",
-    "gap_between",
+    "gaps_of_states",
     "respond_library",
-    "sampled",
-    "stroboscopic_samples",
-    "traits",
+    "sample_evenly",
+    "sample_stroboscopically",
+    "traits_for_loops",
     "sources_of",
     "is_current_and_trusted",
 ]

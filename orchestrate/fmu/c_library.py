@@ -33,7 +33,7 @@ FORM = "libraries"
 SOURCES = tuple(sorted(sources.LOOPS.glob("*.c")))
 
 
-def library_path(source: Path, folder: str | PathLike[str] | None = None) -> Path:
+def find_or_compile_library(source: Path, folder: str | PathLike[str] | None = None) -> Path:
     """Return the path of a C source's shared library, compiled if missing or out of date."""
     platform = this_machine()
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
@@ -57,12 +57,13 @@ def library_path(source: Path, folder: str | PathLike[str] | None = None) -> Pat
 
 
 @functools.cache
-def loaded_loop(name: str) -> Any:
-    return loaded_library(sources.LOOPS / f"{name}.c")
+def load_loop(name: str) -> Any:
+    """Return a loop of ``fmu_src/kernels/loops`` as a library, loaded once, compiled if missing."""
+    return load_library(sources.LOOPS / f"{name}.c")
 
 
-def loaded_library(source: Path) -> Any:
-    path = library_path(source)
+def load_library(source: Path) -> Any:
+    path = find_or_compile_library(source)
     try:
         return ctypes.CDLL(str(path))
     except OSError as reason:  # such as a folder from which nothing may be run
@@ -73,10 +74,10 @@ def is_trusted(path: Path) -> bool:
     """Return whether a library came with the package, or nobody else can have written it."""
     if path.is_relative_to(SHIPPED):
         return True
-    return all(part.exists() and is_written_by_trusted_only(part) for part in trusted_parts(path))
+    return all(part.exists() and is_written_by_trusted_only(part) for part in paths_to_protect(path))
 
 
-def trusted_parts(path: Path) -> tuple[Path, ...]:
+def paths_to_protect(path: Path) -> tuple[Path, ...]:
     """Return what decides on what is loaded: a library, its digest, and their own folders."""
     return path, sources.digest_file(path), path.parent, path.parent.parent
 
@@ -84,6 +85,7 @@ def trusted_parts(path: Path) -> tuple[Path, ...]:
 def build_libraries(
     folder: str | PathLike[str] | None = None, platforms: Iterable[str] = ()
 ) -> list[Path]:
+    """Compile all C sources for platforms; return the files, and warn of what is left out."""
     target, made = default_folder() if folder is None else Path(folder), []
     left: dict[str, list[str]] = {}  # names by the reason
     for source in SOURCES:
@@ -98,6 +100,7 @@ def build_libraries(
 
 
 def compile_library(source: Path, platform: str, folder: Path) -> Path:
+    """Compile a C source; write the library and its digest, which only the user can write."""
     path = folder / FORM / sources.file_name(source, platform)
     log.info("compiling %s", path)
     library = sources.export(source, platform)
@@ -105,6 +108,6 @@ def compile_library(source: Path, platform: str, folder: Path) -> Path:
     write_atomically(path, lambda target: target.write_bytes(library))
     digest = sources.digest(library).encode()
     write_atomically(sources.digest_file(path), lambda target: target.write_bytes(digest))
-    for part in trusted_parts(path):
+    for part in paths_to_protect(path):
         forbid_writing_by_others(part)
     return path

@@ -19,7 +19,7 @@ from math import isfinite
 from typing import Any
 
 from ..errors import FmuError
-from .fmi import references
+from .fmi import value_references
 from .instance import DISCARD, ERROR, Instance
 
 
@@ -60,7 +60,7 @@ class Channel:
         self._free = dll.fmi3FreeFMUState if is_fmi3 else dll.fmi2FreeFMUstate
         self._inputs: Any = (c_double * len(inputs))()
         self._outputs: Any = (c_double * len(outputs))()
-        sent, read = references(instance, inputs), references(instance, outputs)
+        sent, read = value_references(instance, inputs), value_references(instance, outputs)
         self._names = outputs
         self._puts = [self._arguments(sent, n, self._inputs) for n in range(len(inputs) + 1)]
         self._gets = self._arguments(read, len(outputs), self._outputs)
@@ -71,14 +71,15 @@ class Channel:
         return (self._fmu.component, references, count, values, *sizes)
 
     def _call(self, function: Callable[..., int], *arguments: Any) -> None:
-        self.begin()
+        self.clear_messages()
         if status := function(*arguments):
-            self.instance.check(getattr(function, "__name__", "a call"), status)
+            self.instance.check_status(getattr(function, "__name__", "a call"), status)
 
-    def references(self) -> tuple[Any, Any]:
+    def input_and_output_references(self) -> tuple[Any, Any]:
+        """Return the value references of the inputs, and of the outputs, as C arrays."""
         return self._puts[-1][1], self._gets[1]
 
-    def begin(self) -> None:
+    def clear_messages(self) -> None:
         """Clear the FMU's log messages before a new call, so that an error shows only its own."""
         self.instance._messages.clear()
 
@@ -89,6 +90,7 @@ class Channel:
         self._call(self._set, *self._puts[count])
 
     def get(self) -> list[float]:
+        """Return the FMU's outputs in the order of the constructor; raise unless all are finite."""
         self._call(self._read, *self._gets)
         values: list[float] = self._outputs[:]
         if not isfinite(sum(values)) and not all(map(isfinite, values)):
@@ -96,11 +98,16 @@ class Channel:
         return values
 
     def check_step(self, status: int, whole: bool) -> None:
-        """Take a step's status, whether it was whole, and its answer by this module's rule."""
+        """Raise unless a step went well by this module's rule; note in ``ended`` if it is the last.
+
+        ``whole`` says whether the step reached its end, :attr:`answer` what the FMU answered.
+        """
         answer, name = self.answer, self.instance.description.name
-        texts = [self.instance.logged()]
-        if answer.terminate and self.instance.logged(ERROR):  # pythonfmu's answer to an exception
-            raise self.instance.failure("")
+        texts = [self.instance.logged_messages()]
+        if answer.terminate and self.instance.logged_messages(
+            ERROR
+        ):  # pythonfmu's answer to an exception
+            raise self.instance.error_from_log("")
         if answer.terminate:
             texts = [f"the FMU {name} ended the simulation at t = {answer.last:.6g} s", *texts]
             self.ended = ": ".join(filter(None, texts))
@@ -114,7 +121,7 @@ class Channel:
             raise FmuError(f"the FMU {name} {why}: {cause}")
         if self.ended and not whole:
             raise SimulationEnded(self.ended)
-        self.instance.check("the step", status)
+        self.instance.check_status("the step", status)
 
     def close(self) -> None:
         """Free the kept state; an FMU without states is not asked to."""

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from .unit_names import Unit, unit_by_name
+from .unit_names import Unit, parse_unit
 
 MAX_FILES = 10_000  # far above any real FMU: an archive with more is an attack or an accident
 MAX_BYTES = 1 << 30  # unpacked; the same
@@ -58,6 +58,7 @@ class Description:
 
 
 def describe(path: str | PathLike[str], model: str | None = None) -> Description:
+    """Return an FMU's description; raise unless readable, and of the model if one is named."""
     path = Path(path)
     if not path.is_file():
         own = "`python -m orchestrate build` writes the project's own"
@@ -75,13 +76,14 @@ def describe(path: str | PathLike[str], model: str | None = None) -> Description
 
 
 def describe_runnable(path: str | PathLike[str], model: str | None = None) -> Description:
+    """Return an FMU's description; raise unless it has a binary for this machine, too."""
     description = describe(path, model)
     if not description.runs_here:
         raise InputError(f"FMU {path}: it has no binary for this machine; export it with one")
     return description
 
 
-def exponents(base: Any) -> dict[str, int]:
+def si_exponents(base: Any) -> dict[str, int]:
     """Return the nonzero exponents of the SI base units (kg, m, s, ...) of FMPy's base unit."""
     powers = {name: int(getattr(base, name)) for name in SI_UNITS} if base else {}
     return {name: exponent for name, exponent in powers.items() if exponent}
@@ -89,11 +91,11 @@ def exponents(base: Any) -> dict[str, int]:
 
 def units_of(xml: Any) -> dict[str, Unit]:
     """Return the units of FMPy's description: those without a base unit, by their names."""
-    named = ((name, unit_by_name(name)) for name in {v.unit for v in xml.modelVariables} if name)
+    named = ((name, parse_unit(name)) for name in {v.unit for v in xml.modelVariables} if name)
     defined = ((u.name, u.baseUnit) for u in xml.unitDefinitions if u.baseUnit)
     return {
         **{name: unit for name, unit in named if unit is not None},
-        **{name: Unit(exponents(base), float(base.factor)) for name, base in defined},
+        **{name: Unit(si_exponents(base), float(base.factor)) for name, base in defined},
     }
 
 
@@ -103,15 +105,15 @@ _digests: dict[tuple[float, ...], str] = {}  # by what changes with a file
 
 def digest_of(path: Path) -> str:
     """Return the digest of a file's bytes, which are read again if the file may have changed."""
-    seen = path.stat()
-    key = seen.st_dev, seen.st_ino, seen.st_size, seen.st_mtime_ns, seen.st_ctime_ns
+    now = path.stat()
+    key = now.st_dev, now.st_ino, now.st_size, now.st_mtime_ns, now.st_ctime_ns
     digest = _digests.get(key) or hashlib.sha256(path.read_bytes()).hexdigest()
-    if time.time() - max(seen.st_mtime, seen.st_ctime) > QUIET:
+    if time.time() - max(now.st_mtime, now.st_ctime) > QUIET:
         _digests[key] = digest
     return digest
 
 
-def checked_names(data: bytes) -> list[str]:
+def checked_archive_names(data: bytes) -> list[str]:
     """Return the paths in an FMU's zip; raise if one is outside, or it is too large."""
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         entries = archive.infolist()
@@ -145,7 +147,7 @@ def read_description(path: Path) -> Description:
 
         data = path.read_bytes()
         digest = hashlib.sha256(data).hexdigest()
-        names = checked_names(data)
+        names = checked_archive_names(data)
         xml = fmpy.read_model_description(io.BytesIO(data))
         co_simulation = xml.coSimulation
         library = f"{co_simulation and co_simulation.modelIdentifier}{fmpy.sharedLibraryExtension}"

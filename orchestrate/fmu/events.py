@@ -19,11 +19,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import FmuError, InputError
 from ..model import Excitation, Structure
-from .begin import REST, begin
-from .c_library import loaded_loop
-from .fmi import BROKEN, NOT_FINITE, PAUSED, Fmi, references
+from .c_library import load_loop
+from .fmi import BROKEN, NOT_FINITE, PAUSED, Fmi, value_references
 from .impacts import EVENT_OUTPUTS, Impacts
 from .instance import Instance
+from .start import REST, start_motion
 
 Floats = NDArray[np.float64]
 IMPACT_CAPACITY = 1024  # impacts in the buffer that the loop fills
@@ -83,17 +83,18 @@ class EventLoop:
         self, instance: Instance, inputs: Sequence[str] = (), outputs: Sequence[str] = ()
     ) -> None:
         self.instance, self.inputs, self.outputs = instance, tuple(inputs), tuple(outputs)
-        self._play = loaded_loop("play").play
+        self._play = load_loop("play").play
         self._play.argtypes = [c_void_p] * 3
         self._buffer = np.empty((IMPACT_CAPACITY, len(EVENT_OUTPUTS) + 2))
         names = self.inputs, self.outputs, EVENT_OUTPUTS, ("in_contact",)
         self._calls = PlayerCalls(
             Fmi.from_instance(instance),
-            *(references(instance, some) for some in names),
+            *(value_references(instance, group) for group in names),
             *map(len, names[:3]),
         )
 
     def run(self, nodes: Floats, derivatives: Floats, samples: Floats) -> Played:
+        """Step from the first node to the last; set inputs at nodes, read outputs at samples."""
         arrays = [np.ascontiguousarray(part, float) for part in (nodes, derivatives, samples)]
         if arrays[1].shape != (len(nodes) - 1, len(self.inputs)):
             raise ValueError(f"derivatives of shape {derivatives.shape} for {len(nodes)} nodes")
@@ -116,7 +117,7 @@ class EventLoop:
     def _failure(self, rows: Floats, progress: PlayProgress) -> FmuError:
         fmi: Fmi = self._calls.fmi
         if fmi.status != NOT_FINITE:
-            return fmi.error(self.instance)
+            return fmi.error_of_failed_call(self.instance)
         read = rows[max(progress.sample - 1, 0) : progress.sample]
         if not np.isfinite(read).all():
             return self.instance.not_finite_error(self.outputs, read[0])
@@ -137,10 +138,12 @@ class EventInstance(Instance):
             self.close()
             raise InputError(f"FMU {path}: is FMI {version}; expected FMI 3.0, which has events")
 
-    def impacts(self, time: float, target: float) -> Impacts:
+    def record_impacts(self, time: float, target: float) -> Impacts:
+        """Step from a time to another; return the impacts between."""
         return self.event_loop().run(np.array([time, target]), NO_INPUT, NO_TIMES).impacts
 
     def event_loop(self, inputs: Sequence[str] = (), outputs: Sequence[str] = ()) -> EventLoop:
+        """Return the loop of these variables, made once."""
         key = tuple(inputs), tuple(outputs)
         if key not in self._loops:
             self._loops[key] = EventLoop(self, *key)
@@ -151,11 +154,11 @@ class Player(EventInstance):
     """Oscillator FMU instance that simulates motions under inputs given as cubics."""
 
     def start(
-        self, structure: Structure, start: ArrayLike = REST, beside: Excitation | None = None
+        self, structure: Structure, start: ArrayLike = REST, excitation: Excitation | None = None
     ) -> None:
-        """Start a motion at time 0; ``beside`` acts beside the cubics, by default nothing."""
+        """Start a motion at time 0; an excitation acts besides the cubics, by default none."""
         at_rest = Excitation(frequency=structure.omega, amplitude=0.0)
-        begin(self, structure, beside or at_rest, start)
+        start_motion(self, structure, excitation or at_rest, start)
 
     def play(
         self,
@@ -163,8 +166,8 @@ class Player(EventInstance):
         derivatives: Floats,
         samples: Floats,
         outputs: Sequence[str] = PLAYED,
-        drives: Sequence[str] = (BOX,),
+        driven: Sequence[str] = (BOX,),
     ) -> Played:
-        """Simulate under consecutive cubics of what drives; return samples and impacts."""
-        inputs = (*(name for drive in drives for name in CUBICS[drive]),)
+        """Simulate under consecutive cubics of driven quantities; return samples and impacts."""
+        inputs = (*(name for quantity in driven for name in CUBICS[quantity]),)
         return self.event_loop(inputs, tuple(outputs)).run(nodes, derivatives, samples)

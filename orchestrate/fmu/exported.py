@@ -58,6 +58,7 @@ def build(
 def export_all(
     pairs: Iterable[tuple[str, str]], folder: Path, platforms: tuple[str, ...] = ()
 ) -> list[Path]:
+    """Export (form, model) pairs; warn of those that cannot be, raise if none can."""
     written, reasons = [], []
     for form, name in pairs:
         try:
@@ -74,9 +75,10 @@ def export_all(
 def export(
     name: str, form: str, folder: Path, platforms: tuple[str, ...] = (), level: int = logging.INFO
 ) -> Path:
-    check(name, form)
+    """Export an FMU to ``folder/form/name.fmu``, which only the user can write if it is default."""
+    require_known(name, form)
     make_writable_folder(folder)
-    announce(folder, level)
+    log_first_export(folder, level)
     log.info("exporting %s", folder / form / f"{name}.fmu")
     try:
         path = export_or_copy(name, form, folder, platforms)
@@ -90,6 +92,7 @@ def export(
 
 
 def export_or_copy(name: str, form: str, folder: Path, platforms: tuple[str, ...]) -> Path:
+    """Export an FMU, or copy the one that the package came with if none can be exported here."""
     try:
         return sources.export(name, form, folder, platforms or None)
     except CannotExport:
@@ -102,7 +105,8 @@ def export_or_copy(name: str, form: str, folder: Path, platforms: tuple[str, ...
     return write_atomically(path, lambda target: target.write_bytes(shipped))
 
 
-def export_once(name: str, form: str, folder: Path, level: int) -> Description:
+def export_unless_current(name: str, form: str, folder: Path, level: int) -> Description:
+    """Export an FMU unless another process has just done so; return its description."""
     path = folder / form / f"{name}.fmu"
     with creation_lock(path):
         if not is_current_and_trusted(form, name, folder):
@@ -111,19 +115,20 @@ def export_once(name: str, form: str, folder: Path, level: int) -> Description:
 
 
 @functools.cache
-def announce(folder: Path, level: int) -> None:
+def log_first_export(folder: Path, level: int) -> None:
+    """Log, once a process, that FMUs are exported to a folder."""
     text = "exporting FMUs to %s, this once: compiling takes some seconds a model"
     log.log(level, text, folder)
 
 
 @functools.cache
-def guid(form: str, name: str) -> str:
+def current_guid(form: str, name: str) -> str:
     """Return the GUID that an FMU of this form and model exported from the present sources has."""
-    check(name, form)
+    require_known(name, form)
     return sources.guid(name, form)
 
 
-def check(name: str, form: str) -> None:
+def require_known(name: str, form: str) -> None:
     if name not in MODELS:
         raise InputError(f"model {name}: expected one of {', '.join(MODELS)}")
     if form not in sources.ALL_FORMS:
@@ -134,7 +139,7 @@ def is_current_and_trusted(form: str, name: str, folder: str | PathLike[str]) ->
     """Whether an FMU is of the present sources; others may not write to the default folder."""
     path = Path(folder) / form / f"{name}.fmu"
     try:
-        current = path.is_file() and describe(path, name).guid == guid(form, name)
+        current = path.is_file() and describe(path, name).guid == current_guid(form, name)
     except InputError:  # damaged: to be made again
         return False
     if not current or Path(folder) != default_folder():
@@ -156,14 +161,15 @@ def default_folder() -> Path:
     return user_cache_path("vibroimpact", appauthor=False) / "fmus" / __version__
 
 
-def find(
+def find_or_export(
     model: str,
     form: str = "fmi3",
     folder: str | PathLike[str] | None = None,
     fmu: str | PathLike[str] | None = None,
     level: int = logging.INFO,
 ) -> Description:
-    check(model, form)
+    """Return a model's current FMU: the user's ``fmu``, one that is there, or one exported now."""
+    require_known(model, form)
     if fmu is not None:
         return describe_runnable(fmu, model)
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
@@ -177,7 +183,7 @@ def find(
             if is_current_and_trusted(candidate, model, base):
                 return describe(base / candidate / f"{model}.fmu", model)
         try:
-            return export_once(model, candidate, folders[0], level)
+            return export_unless_current(model, candidate, folders[0], level)
         except CannotExport as reason:
             reasons.append(reason)
     text = f"FMU {model}: none matches the current sources, and none can be built here"
@@ -189,16 +195,16 @@ def warn_once(line: str) -> None:
     log.warning("%s", line)
 
 
-def finder(running: Mapping[str, Any]) -> Callable[[str], Description]:
+def make_fmu_finder(running: Mapping[str, Any]) -> Callable[[str], Description]:
     """Return a function from model name to FMU description, made of a question's keywords."""
     user_fmu, folder = running.get("fmu"), running.get("build_folder")
     level = logging.WARNING if running.get("progress", True) else logging.INFO
     if isinstance(user_fmu, Mapping):
         for name in user_fmu:
-            check(name, "fmi3")
+            require_known(name, "fmi3")
 
     def find_model(model: str) -> Description:
         path = user_fmu.get(model) if isinstance(user_fmu, Mapping) else user_fmu
-        return find(model, folder=folder, fmu=path, level=level)
+        return find_or_export(model, folder=folder, fmu=path, level=level)
 
     return find_model

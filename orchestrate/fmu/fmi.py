@@ -46,9 +46,10 @@ class Fmi(ctypes.Structure):
         addresses = iter(known)
         return cls(component, version, *(next(addresses) if name else None for name in names))
 
-    def error(self, instance: Instance) -> FmuError:
-        return instance.refusal((self.failed or b"").decode(), self.status)
+    def error_of_failed_call(self, instance: Instance) -> FmuError:
+        return instance.status_error((self.failed or b"").decode(), self.status)
 
 
-def references(instance: Instance, names: Sequence[str]) -> Any:
+def value_references(instance: Instance, names: Sequence[str]) -> Any:
+    """Return the value references of variables as a C array."""
     return (c_uint * len(names))(*(instance.variable(name).valueReference for name in names))

@@ -28,10 +28,13 @@ class Impacts:
         table = table.reshape(-1, len(EVENT_OUTPUTS) + 2)
         return cls(table[:, 0], table[:, 1:5], table[:, 5], table[:, 6] != 0.0)
 
-    def impulse(self, structure: Structure, speed: float = 1.0) -> NDArray[np.float64]:
-        """Return each impact's impulse on each mass, N s, (n,) (15); plastic if contact begins."""
+    def impulse(self, structure: Structure, speed_unit: float = 1.0) -> NDArray[np.float64]:
+        """Return each impact's impulse on each mass (15), (n,): plastic if contact begins.
+
+        In N s; of non-dimensional impacts, whose unit of speed is needed, in N s over that unit.
+        """
         m1, m2 = structure.m1, structure.m2
-        restitution = np.where(self.sticks, 0.0, structure.restitution(speed * self.closing))
+        restitution = np.where(self.sticks, 0.0, structure.restitution(speed_unit * self.closing))
         if structure.wall:
             return np.asarray((1.0 + restitution) * m1 * self.closing)
         impulse: NDArray[np.float64] = (1.0 + restitution) * m1 * m2 / (m1 + m2) * self.closing

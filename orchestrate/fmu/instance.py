@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import FmuError, InputError, VibroimpactError
 from .description import describe
-from .unpacked import loaded
+from .unpacked import new_fmu_object
 
 REAL_TYPES = ("Real", "Float64")
 INTEGER_TYPES = ("Integer", "Int32")
@@ -53,8 +53,8 @@ class Instance:
 
     Examples
     --------
-    >>> from orchestrate.fmu import OSCILLATOR, Instance, find
-    >>> with Instance(find(OSCILLATOR).path) as instance:
+    >>> from orchestrate.fmu import OSCILLATOR, Instance, find_or_export
+    >>> with Instance(find_or_export(OSCILLATOR).path) as instance:
     ...     instance.initialize(box_amplitude=1.0, box_frequency=1.2)
     ...     instance.step(0.0, 100.0)
     ...     instance.get("impact_count")
@@ -73,8 +73,8 @@ class Instance:
         self.cache: dict[object, Any] = {}  # what callers prepare once for this instance
         self._open = False
         try:
-            self._fmu = loaded(self.description, name)
-            (self._make3 if self.is_fmi3 else self._make2)()
+            self._fmu = new_fmu_object(self.description, name)
+            (self._instantiate_fmi3 if self.is_fmi3 else self._instantiate_fmi2)()
         except VibroimpactError:
             raise
         except Exception as error:
@@ -83,14 +83,14 @@ class Instance:
         self._open = True
         self._start, self._time, self._length = c_double(), c_double(), c_double()
         self._reset, self._initialize, self._step = (
-            self._calls3() if self.is_fmi3 else self._calls2()
+            self._prepare_fmi3() if self.is_fmi3 else self._prepare_fmi2()
         )
 
     @property
     def is_fmi3(self) -> bool:
         return self.description.is_fmi3
 
-    def _make2(self) -> None:
+    def _instantiate_fmi2(self) -> None:
         import fmpy
         from fmpy import fmi2
 
@@ -102,28 +102,28 @@ class Instance:
         fmpy.logging.addLoggerProxy(byref(self._callbacks))
         self.call("instantiate", callbacks=self._callbacks, loggingOn=True)
 
-    def _make3(self) -> None:
+    def _instantiate_fmi3(self) -> None:
         self.call("instantiate", loggingOn=True, logMessage=self._log, **self.EVENTS)
 
-    def _calls2(self) -> tuple[Prepared, list[Prepared], Prepared]:
+    def _prepare_fmi2(self) -> tuple[Prepared, list[Prepared], Prepared]:
         no, zero = c_int(0), c_double()  # no tolerance, no end
         initialize = [
-            self.prepared("fmi2SetupExperiment", no, zero, self._start, no, zero),
-            self.prepared("fmi2EnterInitializationMode"),
-            self.prepared("fmi2ExitInitializationMode"),
+            self.prepare_call("fmi2SetupExperiment", no, zero, self._start, no, zero),
+            self.prepare_call("fmi2EnterInitializationMode"),
+            self.prepare_call("fmi2ExitInitializationMode"),
         ]
-        step = self.prepared("fmi2DoStep", self._time, self._length, c_int(1))
-        return self.prepared("fmi2Reset"), initialize, step
+        step = self.prepare_call("fmi2DoStep", self._time, self._length, c_int(1))
+        return self.prepare_call("fmi2Reset"), initialize, step
 
-    def _calls3(self) -> tuple[Prepared, list[Prepared], Prepared]:
+    def _prepare_fmi3(self) -> tuple[Prepared, list[Prepared], Prepared]:
         no, zero = c_bool(False), c_double()
         initialize = [
-            self.prepared("fmi3EnterInitializationMode", no, zero, self._start, no, zero),
-            self.prepared("fmi3ExitInitializationMode"),
+            self.prepare_call("fmi3EnterInitializationMode", no, zero, self._start, no, zero),
+            self.prepare_call("fmi3ExitInitializationMode"),
         ]
         results = [*(byref(c_bool()) for _ in range(3)), byref(c_double())]
-        step = self.prepared("fmi3DoStep", self._time, self._length, c_bool(True), *results)
-        return self.prepared("fmi3Reset"), initialize, step
+        step = self.prepare_call("fmi3DoStep", self._time, self._length, c_bool(True), *results)
+        return self.prepare_call("fmi3Reset"), initialize, step
 
     def __enter__(self) -> Any:
         return self
@@ -146,37 +146,46 @@ class Instance:
         status, _, message = arguments[-3:]
         self._messages.append((int(status), message.decode(errors="replace")))
 
-    def logged(self, least: int = 0) -> str:
+    def logged_messages(self, min_status: int = 0) -> str:
         """Return what the FMU logged in the last call with at least this status, each text once."""
         quoted = r"(?s).*FmuError\(([\"'])(.*)\1\)\s*$"  # how pythonfmu hands an exception on
-        texts = (re.sub(quoted, r"\2", text) for status, text in self._messages if status >= least)
+        messages = (text for status, text in self._messages if status >= min_status)
+        texts = (re.sub(quoted, r"\2", text) for text in messages)
         return "; ".join(dict.fromkeys(texts))
 
-    def failure(self, error: object) -> FmuError:
-        return FmuError(self.logged() or str(error))
+    def error_from_log(self, otherwise: object) -> FmuError:
+        """Return the error with what the FMU logged in the last call, or else with this text."""
+        return FmuError(self.logged_messages() or str(otherwise))
 
-    def refusal(self, function: str, status: int) -> FmuError:
+    def status_error(self, function: str, status: int) -> FmuError:
         """Return the ``FmuError`` for a status that ends a run: what was logged, or the status."""
         in_words = STATUSES[status] if 0 <= status < len(STATUSES) else f"status {status}"
         name = self.description.name
-        return self.failure(f"{function} of the FMU {name} failed ({in_words}) without a message")
+        return self.error_from_log(
+            f"{function} of the FMU {name} failed ({in_words}) without a message"
+        )
 
-    def check(self, function: str, status: int) -> None:
+    def check_status(self, function: str, status: int) -> None:
         """Raise ``FmuError`` unless a call of the FMU answered OK, or a warning, which is kept."""
         if status == WARNING:
-            text = self.logged(WARNING) or self.logged() or f"{function}, without a message"
+            text = (
+                self.logged_messages(WARNING)
+                or self.logged_messages()
+                or f"{function}, without a message"
+            )
             self.warnings[" ".join(f"the FMU {self.description.name} warns: {text}".split())] = None
         elif status:
-            raise self.refusal(function, status)
+            raise self.status_error(function, status)
 
     def call(self, function: str, *args: Any, **kwargs: Any) -> Any:
+        """Call a method of FMPy's FMU object; what it raises becomes an ``FmuError``."""
         self._messages.clear()
         try:
             return getattr(self._fmu, function)(*args, **kwargs)
         except Exception as error:
-            raise self.failure(error) from None
+            raise self.error_from_log(error) from None
 
-    def prepared(self, function: str, *arguments: Any) -> Prepared:
+    def prepare_call(self, function: str, *arguments: Any) -> Prepared:
         """Return a fast callable of an FMI C function with fixed arguments; it raises on failure.
 
         FMPy and ctypes take longer to convert arguments than the FMU to answer. Here they are made
@@ -188,7 +197,7 @@ class Instance:
         def run() -> None:
             messages.clear()
             if status := call():
-                self.check(function, status)
+                self.check_status(function, status)
 
         return run
 
@@ -196,9 +205,10 @@ class Instance:
         return self.description.variable(name)
 
     def set(self, **values: float) -> None:
+        """Set variables by name, one FMI call for each type."""
         names = ("Set", *values)
         new_values = list(values.values())
-        for call, array, positions in self._transfers.get(names) or self._grouped(names):
+        for call, array, positions in self._transfers.get(names) or self._prepare_transfers(names):
             everything = len(positions) == len(new_values)
             selected = new_values if everything else [new_values[i] for i in positions]
             try:
@@ -208,9 +218,10 @@ class Instance:
             call()
 
     def get(self, *names: str) -> list[Any]:
+        """Return the values of variables in the order of their names."""
         key = ("Get", *names)
         values: list[Any] = [None] * len(names)
-        for call, array, positions in self._transfers.get(key) or self._grouped(key):
+        for call, array, positions in self._transfers.get(key) or self._prepare_transfers(key):
             call()
             if len(positions) == len(names):
                 return list(array[:])
@@ -218,20 +229,22 @@ class Instance:
                 values[position] = value
         return values
 
-    def _grouped(self, names: tuple[str, ...]) -> list[Transfer]:
+    def _prepare_transfers(self, names: tuple[str, ...]) -> list[Transfer]:
         """Prepare an FMI call per data type for variables; the first name: ``Set``/``Get``."""
         verb, *variables = names
         positions: dict[str, list[int]] = {}
         for position, name in enumerate(variables):
             positions.setdefault(self.variable(name).type, []).append(position)
         transfers = [
-            self._transfer(verb, kind, [(self.variable(variables[i]), 1) for i in indices], indices)
+            self._prepare_transfer(
+                verb, kind, [(self.variable(variables[i]), 1) for i in indices], indices
+            )
             for kind, indices in positions.items()
         ]
         self._transfers[names] = transfers
         return transfers
 
-    def _transfer(
+    def _prepare_transfer(
         self, verb: str, kind: str, variables: Sequence[tuple[Any, int]], positions: list[int]
     ) -> Transfer:
         """Prepare one FMI set or get call for variables of one type; return it with its buffer."""
@@ -244,14 +257,16 @@ class Instance:
         references = (c_uint * count)(*(variable.valueReference for variable, _ in variables))
         sizes = (c_size_t(len(values)),) if self.is_fmi3 else ()
         function = f"fmi{3 if self.is_fmi3 else 2}{verb}{kind}"
-        call = self.prepared(function, references, c_size_t(count), values, *sizes)
+        call = self.prepare_call(function, references, c_size_t(count), values, *sizes)
         if verb == "Get" and kind in REAL_TYPES:
-            call = self._checked(call, variables, np.ctypeslib.as_array(values))
+            call = self._with_finite_check(call, variables, np.ctypeslib.as_array(values))
         return Transfer(call, values, positions)
 
-    def _checked(
+    def _with_finite_check(
         self, call: Prepared, variables: Sequence[tuple[Any, int]], values: NDArray[np.float64]
     ) -> Prepared:
+        """Return a call of which values that are not finite are an error too."""
+
         def run() -> None:
             call()
             if not math.isfinite(values.sum()) and not np.isfinite(values).all():
@@ -266,6 +281,7 @@ class Instance:
         return FmuError(f"the FMU {self.description.name} answers {text}; expected a finite number")
 
     def initialize(self, start_time: float = 0.0, **values: float) -> None:
+        """Set start values and enter the mode of steps."""
         self.set(**values)
         self._start.value = start_time
         for call in self._initialize:
@@ -275,26 +291,28 @@ class Instance:
         self._reset()
 
     def step(self, time: float, target: float) -> None:
+        """Step from the present time to another one."""
         self._time.value, self._length.value = time, target - time
         self._step()
 
     def read(self, *names: str) -> NDArray[np.float64]:
         """Return all values of Real variables or arrays, concatenated, by one FMI call."""
-        transfer, values = self._reader(names)
+        transfer, values = self._prepare_reader(names)
         transfer.call()
         return values
 
-    def size(self, *names: str) -> int:
-        return len(self._reader(names)[1])
+    def value_count(self, *names: str) -> int:
+        """Return how many values :meth:`read` returns for these names."""
+        return len(self._prepare_reader(names)[1])
 
-    def _reader(self, names: tuple[str, ...]) -> tuple[Transfer, NDArray[np.float64]]:
+    def _prepare_reader(self, names: tuple[str, ...]) -> tuple[Transfer, NDArray[np.float64]]:
         if names not in self._readers:
             elements = [element for name in names for element in self.elements(name)]
             for variable in (
                 variable for variable, _ in elements if variable.type not in REAL_TYPES
             ):
                 raise FmuError(f"{variable.name}: is {variable.type}; expected Real variables")
-            transfer = self._transfer("Get", elements[0][0].type, elements, [])
+            transfer = self._prepare_transfer("Get", elements[0][0].type, elements, [])
             self._readers[names] = transfer, np.ctypeslib.as_array(transfer.values)
         return self._readers[names]
 
@@ -309,7 +327,7 @@ class Instance:
         return [(variables[f"{name}[{i + 1}]"], 1) for i in range(count)]
 
     def save_state(self) -> bytes:
-        get, serialize, _, _, free = self.state_calls()
+        get, serialize, _, _, free = self.state_method_names()
         state = self.call(get)
         try:
             return bytes(self.call(serialize, state))
@@ -317,14 +335,14 @@ class Instance:
             self.call(free, state)
 
     def restore_state(self, data: bytes) -> None:
-        _, _, deserialize, put, free = self.state_calls()
+        _, _, deserialize, put, free = self.state_method_names()
         state = self.call(deserialize, data)
         try:
             self.call(put, state)
         finally:
             self.call(free, state)
 
-    def state_calls(self) -> tuple[str, str, str, str, str]:
+    def state_method_names(self) -> tuple[str, str, str, str, str]:
         """Return FMPy's method names to get, serialize, deserialize, set and free a state."""
         if self.is_fmi3:
             save = "getFMUState", "serializeFMUState"

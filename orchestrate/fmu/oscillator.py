@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from ..errors import FmuError
 from ..model import Excitation, Structure
-from .c_library import loaded_loop
-from .fmi import NOT_FINITE, Fmi, references
+from .c_library import load_loop
+from .fmi import NOT_FINITE, Fmi, value_references
 from .impacts import STATE
 from .instance import Instance
 
@@ -97,7 +97,8 @@ class ResponseProgress(ctypes.Structure):
 
 @functools.cache
 def respond_library() -> Any:
-    loaded = loaded_loop("respond")
+    """Return the compiled loop of responses, with the types of its functions."""
+    loaded = load_loop("respond")
     loaded.respond.argtypes = [c_void_p, c_void_p, c_void_p, c_size_t]
     loaded.sample_evenly.argtypes = [c_void_p, c_double, c_double, c_size_t, c_void_p]
     periods = [c_double, c_size_t, c_size_t]
@@ -124,57 +125,61 @@ class Oscillator:
         self.booleans = [name for name, kind in kinds.items() if kind == "Boolean"]
         self.reals = [name for name in kinds if name not in self.booleans]
         elements = [variable for name in SAMPLE_SERIES for variable, _ in instance.elements(name)]
-        self.capacity = instance.size(*SAMPLE_SERIES) // len(SAMPLE_SERIES)
+        self.capacity = instance.value_count(*SAMPLE_SERIES) // len(SAMPLE_SERIES)
         self.kept = np.zeros((len(SAMPLE_SERIES), self.capacity))
         series = (c_uint * len(elements))(*(variable.valueReference for variable in elements))
         self.calls = OscillatorCalls(
             Fmi.from_instance(instance),
-            *(references(instance, names) for names in (self.reals, self.booleans)),
-            *(series, references(instance, PEAKS), len(self.reals), len(self.booleans)),
+            *(value_references(instance, names) for names in (self.reals, self.booleans)),
+            *(series, value_references(instance, PEAKS), len(self.reals), len(self.booleans)),
             *(self.reals.index(START_PARAMETERS[0]), len(elements), self.capacity),
-            *(*references(instance, READ_VARIABLES), self.kept.ctypes.data),
+            *(*value_references(instance, READ_VARIABLES), self.kept.ctypes.data),
         )
 
     @classmethod
     def from_instance(cls, instance: Instance) -> Oscillator:
-        known: Oscillator | None = instance.cache.get(cls)
-        if known is None:
-            known = instance.cache[cls] = cls(instance)
-        return known
+        """Return the oscillator of an instance, made once."""
+        oscillator: Oscillator | None = instance.cache.get(cls)
+        if oscillator is None:
+            oscillator = instance.cache[cls] = cls(instance)
+        return oscillator
 
-    def run(self, name: str, *arguments: Any) -> Any:
+    def call_loop(self, name: str, *arguments: Any) -> Any:
         self.instance._messages.clear()
         return getattr(respond_library(), name)(byref(self.calls), *arguments)
 
-    def error(self) -> FmuError:
+    def error_of_last_call(self) -> FmuError:
+        """Return the error at which a loop has stopped."""
         fmi: Fmi = self.calls.fmi
         if fmi.status != NOT_FINITE:
-            return fmi.error(self.instance)
+            return fmi.error_of_failed_call(self.instance)
         if np.isfinite(self.kept).all():
             return self.instance.not_finite_error(("x_rel_max", *PEAKS), np.array([np.nan]))
         names = [name for name in SAMPLE_SERIES for _ in range(self.capacity)]
         return self.instance.not_finite_error(names, self.kept)
 
 
-def sampled(instance: Instance, time: float, target: float, count: int) -> Floats:
+def sample_evenly(instance: Instance, time: float, target: float, count: int) -> Floats:
+    """Step to ``target``; return states at ``count`` equally spaced times, the last one there."""
     oscillator, states = Oscillator.from_instance(instance), np.empty((count, len(STATE)))
-    if not oscillator.run("sample_evenly", time, target, count, states.ctypes.data):
-        raise oscillator.error()
+    if not oscillator.call_loop("sample_evenly", time, target, count, states.ctypes.data):
+        raise oscillator.error_of_last_call()
     return states
 
 
-def stroboscopic_samples(
+def sample_stroboscopically(
     instance: Instance, period: float, transient: int, samples: int
 ) -> tuple[Floats, float]:
+    """Run on by whole periods; return the states after each one kept, and the largest gap, m."""
     oscillator, peak = Oscillator.from_instance(instance), c_double()
     states = np.empty((samples, len(STATE)))
-    places = states.ctypes.data, byref(peak)
-    if not oscillator.run("sample_periods", period, transient, samples, *places):
-        raise oscillator.error()
+    addresses = states.ctypes.data, byref(peak)
+    if not oscillator.call_loop("sample_periods", period, transient, samples, *addresses):
+        raise oscillator.error_of_last_call()
     return states, peak.value
 
 
-def traits(
+def traits_for_loops(
     structure: Structure, frequency: float = 1.0, amplitude: float = 0.0, pushed: bool = False
 ) -> Any:
     """Return what a structure under an excitation is for the loops: numbers in C.
@@ -189,8 +194,8 @@ def traits(
     return memory
 
 
-def to_rest(structure: Structure, state: Sequence[float]) -> list[float]:
+def relative_to_rest(structure: Structure, state: Sequence[float]) -> list[float]:
     """Convert a start state from unloaded springs to the FMU's, from rest; all zeros mean rest."""
     numbers, start = (c_double * 4)(*state), (c_double * 4)()
-    respond_library().to_rest(numbers, traits(structure), start)
+    respond_library().to_rest(numbers, traits_for_loops(structure), start)
     return list(start)

@@ -30,7 +30,8 @@ SEPARATED = re.compile(r"([./*\u00b7 ])")
 AMBIGUOUS = ("g",)  # gram, or an acceleration
 
 
-def unit_by_name(name: str) -> Unit | None:
+def parse_unit(name: str) -> Unit | None:
+    """Return the unit that a name such as ``mm/s2`` stands for; None if it is not understood."""
     text = name.strip().replace("\u00b2", "2").replace("\u00b3", "3").replace("**", "^")
     if not text or text in AMBIGUOUS:
         return None
@@ -41,7 +42,7 @@ def unit_by_name(name: str) -> Unit | None:
             sign = -1 if part == "/" else sign
             continue
         match = PART.fullmatch(part)
-        symbol = symbol_by_name(match["symbol"]) if match else None
+        symbol = parse_unit_symbol(match["symbol"]) if match else None
         if match is None or symbol is None:
             return None
         power = sign * int(match["power"] or 1)
@@ -51,7 +52,7 @@ def unit_by_name(name: str) -> Unit | None:
     return Unit({base: power for base, power in exponents.items() if power}, factor)
 
 
-def symbol_by_name(text: str) -> Unit | None:
+def parse_unit_symbol(text: str) -> Unit | None:
     """Return the unit of a symbol, with a prefix or without; None if it is not known."""
     for prefix, factor in PREFIXES.items():
         known = SYMBOLS.get(text.removeprefix(prefix)) if text.startswith(prefix) else None

@@ -21,20 +21,20 @@ _lock = threading.RLock()
 _loaded: dict[tuple[str, str], Any] = {}  # by folder and binary
 
 
-def unpacked(description: Description) -> Path:
+def unpack_once(description: Description) -> Path:
     """Return the folder with an FMU's unpacked files; unpack it there once per process."""
     with _lock:
         try:
             folder = process_temporary_folder() / description.digest[:32]
             if not folder.is_dir():
-                unpack(described_bytes(description), folder)
+                extract_atomically(read_unchanged_bytes(description), folder)
         except OSError as error:
             text = f"{tempfile.gettempdir()}: FMU cannot be unpacked ({error.strerror or error})"
             raise StoreError(f"{text}; expected a folder with room for it") from None
         return folder
 
 
-def described_bytes(description: Description) -> bytes:
+def read_unchanged_bytes(description: Description) -> bytes:
     """Return an FMU file's bytes; raise ``InputError`` if it changed since it was described."""
     data = description.path.read_bytes()
     if hashlib.sha256(data).hexdigest() != description.digest:
@@ -43,7 +43,7 @@ def described_bytes(description: Description) -> bytes:
     return data
 
 
-def unpack(data: bytes, folder: Path) -> None:
+def extract_atomically(data: bytes, folder: Path) -> None:
     """Extract the bytes of an FMU's zip to a folder, atomically (a partial folder is renamed)."""
     import fmpy
 
@@ -56,12 +56,12 @@ def unpack(data: bytes, folder: Path) -> None:
         raise
 
 
-def loaded(description: Description, name: str) -> Any:
+def new_fmu_object(description: Description, name: str) -> Any:
     """Return FMPy's FMU object for a new, not yet instantiated instance; the binary is cached."""
-    key = str(unpacked(description)), description.identifier
+    key = str(unpack_once(description)), description.identifier
     with _lock:
         if key not in _loaded:
-            _loaded[key] = load(description, key[0])
+            _loaded[key] = load_binary(description, key[0])
             if sys.platform == "win32":  # which deletes no binary that is loaded
                 atexit.register(_loaded[key].freeLibrary)
     fmu = copy.copy(_loaded[key])
@@ -69,7 +69,8 @@ def loaded(description: Description, name: str) -> Any:
     return fmu
 
 
-def load(description: Description, folder: str) -> Any:
+def load_binary(description: Description, folder: str) -> Any:
+    """Load the binary of an unpacked FMU; return FMPy's object of it."""
     from fmpy import fmi2, fmi3
 
     make = fmi3.FMU3Slave if description.is_fmi3 else fmi2.FMU2Slave

@@ -42,18 +42,18 @@ class WebKernel:
     guid: str  # of the module
 
 
-def web_kernel(folder: str | PathLike[str] | None = None) -> WebKernel:
+def find_or_compile_web_kernel(folder: str | PathLike[str] | None = None) -> WebKernel:
     """Return the models and loops as WebAssembly; compile them unless the present are there."""
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     guid = sources.guid()
     variables = {name: sources.references(name) for name in sources.MODELS}
     for path in (base / FILE for base in folders):
-        module = read_module(path, guid)
+        module = read_current_module(path, guid)
         if module:
             return WebKernel(module, variables, guid)
     try:
         with creation_lock(folders[0] / FILE):
-            module = read_module(folders[0] / FILE, guid)
+            module = read_current_module(folders[0] / FILE, guid)
             module = module or compile_module(folders[0]).read_bytes()
     except CannotExport as reason:
         text = f"{FILE.name}: none matches the current sources, and none can be built here"
@@ -61,13 +61,14 @@ def web_kernel(folder: str | PathLike[str] | None = None) -> WebKernel:
     return WebKernel(module, variables, guid)
 
 
-def read_module(path: Path, guid: str) -> bytes:
+def read_current_module(path: Path, guid: str) -> bytes:
     """Return a WebAssembly file's bytes if it has the present sources' GUID, else ``b""``."""
     module = path.read_bytes() if path.is_file() else b""
     return module if sources.guid_inside(module) == guid else b""
 
 
 def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
+    """Compile the module; return its file, or [] with a warning if there is no compiler."""
     try:
         return [compile_module(default_folder() if folder is None else Path(folder))]
     except CannotExport as reason:
@@ -75,9 +76,9 @@ def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
         return []
 
 
-def loop_tables(*more: type[ctypes.Structure]) -> dict[str, Any]:
+def loop_tables(*more_structures: type[ctypes.Structure]) -> dict[str, Any]:
     """Return what a page needs to call the loops, as JSON: structures, names, and their order."""
-    structures: tuple[type[ctypes.Structure], ...] = (*STRUCTURES, *more)
+    structures: tuple[type[ctypes.Structure], ...] = (*STRUCTURES, *more_structures)
     arrays = load_model(MODELS[OSCILLATOR]).arrays
     booleans = [name for name, value in oscillator.START_VALUES.items() if isinstance(value, bool)]
     return {
@@ -102,7 +103,7 @@ def layout(kind: type[ctypes.Structure]) -> dict[str, Any]:
 
 
 def place_members(kind: Any) -> tuple[int, int, dict[str, tuple[str, int]]]:
-    """Return size, alignment and members of a C type on a machine of 32 bits."""
+    """Return size, alignment and members (type, offset) of a C type on a machine of 32 bits."""
     if issubclass(kind, ctypes.Structure):
         parts = [(name, member) for name, member, *_ in kind._fields_]
     elif issubclass(kind, ctypes.Array):
@@ -114,34 +115,37 @@ def place_members(kind: Any) -> tuple[int, int, dict[str, tuple[str, int]]]:
     for name, member in parts:
         size, alignment, inner = place_members(member)
         start = round_up(end, alignment)
-        for path, (word, place) in inner.items():
-            fields[f"{name}.{path}".rstrip(".")] = word, start + place
+        for path, (word, offset) in inner.items():
+            fields[f"{name}.{path}".rstrip(".")] = word, start + offset
         end, widest = start + size, max(widest, alignment)
     return round_up(end, widest), widest, fields
 
 
-def round_up(place: int, alignment: int) -> int:
-    return -(-place // alignment) * alignment
+def round_up(offset: int, alignment: int) -> int:
+    """Return the first multiple of an alignment that is not below an offset, in bytes."""
+    return -(-offset // alignment) * alignment
 
 
 def numbers_in(structure: ctypes.Structure) -> dict[str, float]:
     """Return the numbers of a C structure that are not 0, by the names of :func:`layout`."""
-    found = {}
+    numbers = {}
     for path in layout(type(structure))["fields"]:
         value: Any = structure
         for name in path.split("."):
             value = value[int(name)] if name.isdigit() else getattr(value, name)
         if isinstance(value, int | float) and value:
-            found[path] = value
-    return found
+            numbers[path] = value
+    return numbers
 
 
 def kernel_digest(model: str) -> str:
+    """Return a digest of the kernel sources that a model is made of."""
     files = model_sources(MODELS[model])
     return fingerprint({name: files[name] for name in files if name.startswith("kernels/")})
 
 
 def compile_module(folder: Path) -> Path:
+    """Compile the WebAssembly module from the present sources; return its file."""
     path = folder / FILE
     log.info("compiling %s", path)
     module = sources.export()

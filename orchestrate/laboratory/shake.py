@@ -91,7 +91,7 @@ class ShakeJob(Question):
             player.start(self.structure, self.start, self.additional_excitation)
             if previous is not None:
                 player.restore_state(previous["fmu_state"][-1].tobytes())
-            played = player.play(nodes, cubics, samples, drives=(drives,))
+            played = player.play(nodes, cubics, samples, driven=(drives,))
             kept = np.frombuffer(player.save_state(), dtype=np.uint8)[np.newaxis]
         driven = self.excitation_channels(samples)
         forces = np.stack([driven[name] for name in FORCES], axis=1) if self.has_forces else None

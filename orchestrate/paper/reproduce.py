@@ -10,7 +10,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..files import make_writable_folder, write_atomically
-from ..fmu import OSCILLATOR, finder
+from ..fmu import OSCILLATOR, make_fmu_finder
 from ..show.figure_files import save
 from .claims import read_table
 from .datasets import Datasets
@@ -38,7 +38,7 @@ def reproduce(
 ) -> Reproduction:
     """Compute the paper, or some parts; take stored results; write pictures, claims and report."""
     parts = choose_parts(figures)
-    fmu = finder(running)(OSCILLATOR)
+    fmu = make_fmu_finder(running)(OSCILLATOR)
     make_writable_folder(output)
     data = Datasets(output, resolution, running)
     found = write_claims(data) if CLAIMS in parts else {"claims": [], "regions": []}

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..fmu import gap_between, respond_library, traits
+from ..fmu import gaps_of_states, respond_library, traits_for_loops
 from ..model import Excitation, Structure
 from .questions import Point
 
@@ -19,7 +19,7 @@ Flags = NDArray[np.bool_]
 
 def in_permanent_contact(states: Floats, gap_offset: ArrayLike = 0.0) -> Flags:
     """Return, for each state, whether it is permanent contact: no gap and equal velocities."""
-    together = gap_between(states, gap_offset) == 0.0
+    together = gaps_of_states(states, gap_offset) == 0.0
     touching: Flags = together & (states[..., 2] == states[..., 3])
     return touching
 
@@ -52,7 +52,7 @@ def absolute_accelerations_by_forces(
     if forces is None and not (s.wall or s.stroke):
         return absolute_accelerations_unforced(states, s, touching)
     if touching is None:
-        gap = gap_between(states, s.gap_offset)
+        gap = gaps_of_states(states, s.gap_offset)
         touching = (gap == 0.0) | ((s.stroke > 0.0) & np.isclose(gap, s.stroke, 1e-14, 0.0))
         touching &= states[:, 2] == states[:, 3]
     loads = (0.0 if forces is None else forces) - states[:, :2] * (s.k1, s.k2)
@@ -70,7 +70,7 @@ def absolute_accelerations_unforced(
     if touching is None:
         touching = in_permanent_contact(states, structure.gap_offset)
     rows, flags = np.ascontiguousarray(states, dtype=float), np.ascontiguousarray(touching)
-    accelerations, numbers = np.empty((len(rows), 2)), traits(structure)
+    accelerations, numbers = np.empty((len(rows), 2)), traits_for_loops(structure)
     addresses = (part.ctypes.data for part in (flags, accelerations))
     respond_library().find_accelerations(rows.ctypes.data, len(rows), numbers, *addresses)
     return accelerations

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import NOT_NUMBERS, InputError
-from ..fmu import REST, finder, gap_between
+from ..fmu import REST, gaps_of_states, make_fmu_finder
 from ..lazy import xr
 from ..model import PARAMETERS, Excitation, Structure
 from ..model.arguments import Numbers, checked_numbers, checked_unmasked
@@ -68,7 +68,7 @@ class Point(NamedTuple):
         offset = self.structure.gap_offset
         if offset != 0.0:
             states = np.array(states, dtype=float)
-            states[..., 1] = states[..., 0] + gap_between(states, offset)
+            states[..., 1] = states[..., 0] + gaps_of_states(states, offset)
         faces: NDArray[np.float64] = states / self.state_units
         return faces
 
@@ -306,7 +306,7 @@ Values = Annotated[ArrayLike | None, checked_excitation_numbers]
 
 def is_outside_gap(states: NDArray[np.float64], structure: Structure) -> NDArray[np.bool_]:
     """Return, for each state, whether the masses overlap or the gap is beyond the stroke."""
-    gap, rounding = gap_between(states, structure.gap_offset), 1.0 + 1e-14
+    gap, rounding = gaps_of_states(states, structure.gap_offset), 1.0 + 1e-14
     beyond = gap > structure.stroke * rounding if structure.stroke else False
     return np.asarray((gap < 0.0) | beyond)
 
@@ -416,7 +416,7 @@ class Question(Job, ABC):
 
 
 def answer_question(job: Question, running: Mapping[str, Any]) -> xr.Dataset:
-    return compute_dataset(job, running, finder(running))
+    return compute_dataset(job, running, make_fmu_finder(running))
 
 
 @dataclass(frozen=True, kw_only=True)

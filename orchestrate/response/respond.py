@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..fmu import Instance, four_numbers, gap_between
+from ..fmu import Instance, checked_four_numbers, gaps_of_states
 from ..model import Excitation, Structure
 from .multiplicity import Decision, Repetition, find_repetition, lacks_impacts
 from .questions import Point
@@ -50,7 +50,7 @@ class Response:
     @property
     def gap(self) -> NDArray[np.float64]:
         """Return the gap at the samples, m."""
-        return gap_between(self.samples, self.gap_offset)
+        return gaps_of_states(self.samples, self.gap_offset)
 
 
 def simulate_response(
@@ -65,7 +65,7 @@ def simulate_response(
     """Run one response from a start at phase 0; transient and samples are in periods."""
     points = [Point(structure, excitation)]
     settings = LoopSettings(transient=transient, samples=samples)
-    results = response_loop(instance).simulate(points, [four_numbers(start)], settings)
+    results = response_loop(instance).simulate(points, [checked_four_numbers(start)], settings)
     return next(responses_from(results, points, tolerance))
 
 

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..fmu import START_VALUES, Instance, Oscillator, traits
-from ..fmu.fmi import BROKEN, PAUSED, references
+from ..fmu import START_VALUES, Instance, Oscillator, traits_for_loops
+from ..fmu.fmi import BROKEN, PAUSED, value_references
 from ..fmu.impacts import STATE
 from ..fmu.oscillator import COUNTED, COUNTS, PEAKS, KnownMotions, ResponseProgress, ResponseTask
 from .multiplicity import memory_size
@@ -132,7 +132,7 @@ class ResponseLoop:
             states = np.concatenate([motion.states for motion in settings.known])
             gaps = np.array([motion.gap for motion in settings.known])
             tables = (table.ctypes.data for table in (states, gaps, lengths))
-            state = references(self.oscillator.instance, STATE)
+            state = value_references(self.oscillator.instance, STATE)
             task.known = pointer(KnownMotions(len(gaps), state, *tables, settings.same))
         self.run(task)
         return results
@@ -141,9 +141,9 @@ class ResponseLoop:
         """Call the compiled loop until the task is done; it writes into the task's arrays."""
         progress, answer = ResponseProgress(), PAUSED
         while answer == PAUSED:
-            answer = self.oscillator.run("respond", byref(task), byref(progress), MAX_WORK)
+            answer = self.oscillator.call_loop("respond", byref(task), byref(progress), MAX_WORK)
         if answer == BROKEN:
-            raise self.oscillator.error()
+            raise self.oscillator.error_of_last_call()
 
     def point_rows(self, points: Sequence[Point]) -> PointRows:
         """Return the rows of points, those of the last call if the points are the same."""
@@ -172,4 +172,4 @@ class ResponseLoop:
 
 def traits_of_point(point: Point) -> Any:
     excitation, pushed = point.excitation, any(point.excitation.pushes)
-    return traits(point.structure, excitation.frequency, excitation.amplitude, pushed)
+    return traits_for_loops(point.structure, excitation.frequency, excitation.amplitude, pushed)

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..fmu import NO_INPUT, OSCILLATOR, EventInstance, Impacts, begin
+from ..fmu import NO_INPUT, OSCILLATOR, EventInstance, Impacts, start_motion
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Transient
@@ -55,8 +55,8 @@ class SimulateJob(OneMotionQuestion):
     ) -> Table:
         times = self.communication_times()
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            begin(instance, *items[0], self.start)
-            instance.impacts(0.0, float(times[0]))
+            start_motion(instance, *items[0], self.start)
+            instance.record_impacts(0.0, float(times[0]))
             ends = times[[0, -1]]
             loop = instance.event_loop((), OUTPUTS)
             rows, touching, impacts = loop.run(ends, NO_INPUT, times)

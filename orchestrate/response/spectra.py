@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
 from ..errors import InputError
-from ..fmu import OSCILLATOR, REST, Instance, begin, sampled
-from ..fmu.c_library import loaded_loop
+from ..fmu import OSCILLATOR, REST, Instance, sample_evenly, start_motion
+from ..fmu.c_library import load_loop
 from ..lazy import Unpack, xr
 from ..model import Excitation, Structure
 from ..model.arguments import Count, Positive, Transient, whole
@@ -36,7 +36,7 @@ Floats = NDArray[np.float64]
 
 @functools.cache
 def spectrum_library() -> Any:
-    loaded = loaded_loop("spectrum")
+    loaded = load_loop("spectrum")
     loaded.spectrum_size.restype, loaded.spectrum_size.argtypes = c_size_t, [c_size_t]
     loaded.amplitude_spectrum.argtypes = [c_void_p, c_size_t, c_void_p, c_void_p]
     loaded.acceleration_spectrum.argtypes = [
@@ -108,10 +108,10 @@ class SpectraJob(SeriesQuestion):
         """Run a response from rest; return its spectra with impulses, and between impacts."""
         span, count = point.excitation.period, self.periods * self.points
         first, last = self.transient * span, (self.transient + self.periods) * span
-        begin(instance, *point, REST)
+        start_motion(instance, *point, REST)
         if self.transient:
             instance.step(0.0, first)
-        states = sampled(instance, first, last, count)
+        states = sample_evenly(instance, first, last, count)
         phase = TURN * np.arange(1, count + 1) / self.points
         accelerations = absolute_accelerations_at(states, point, phase)
         shown, interval = len(self.orders()), span / self.points

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
-from ..fmu import traits
+from ..fmu import traits_for_loops
 from ..lazy import xr
 from ..model import Structure
 from ..running.job import format_brief
@@ -30,7 +30,7 @@ ACCURACY = 1e-12  # of a frequency at a minimum; the level there is flat, and ex
 
 def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
     """Return box amplitudes, m, of the first touch or opening; infinite if halves move alike."""
-    levels = [traits(structure, each)[THRESHOLD] for each in np.ravel(frequency).tolist()]
+    levels = [traits_for_loops(structure, each)[THRESHOLD] for each in np.ravel(frequency).tolist()]
     return np.reshape(levels, np.shape(frequency))
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
-from ..fmu.exported import finder
+from ..fmu.exported import make_fmu_finder
 from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer, checked_list, checked_pair
@@ -335,4 +335,4 @@ def capture(
     job = CaptureJob("capture", *what, *how)
     for each in job.items():  # refused now, not amid the work
         make_couple_job(*each, Constant(voltages[-1], job.time_limit(each)), scheme, 0.0, control)
-    return compute_dataset(job, running, finder(running))
+    return compute_dataset(job, running, make_fmu_finder(running))

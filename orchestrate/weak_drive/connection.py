@@ -16,7 +16,7 @@ from typing import Any
 from ..errors import InputError
 from ..fmu.description import Description
 from ..fmu.instance import INTEGER_TYPES, REAL_TYPES
-from ..fmu.unit_names import unit_by_name
+from ..fmu.unit_names import parse_unit
 from ..model.spelling import did_you_mean
 
 MOTION = ("box_acceleration", "box_velocity", "box_position")  # outputs of a drive
@@ -109,7 +109,7 @@ def checked_links(
 def checked_units(units: Mapping[str, str], drive: Description) -> dict[str, str]:
     for name, unit in units.items():
         checked_variable(drive, name, "")
-        if unit_by_name(str(unit)) is None:
+        if parse_unit(str(unit)) is None:
             raise InputError(f"units: {name} = {unit!r}; expected a unit such as m/s2, mm or kN")
     return dict(units)
 
@@ -146,7 +146,7 @@ def format_candidates(drive: Description, causality: str) -> str:
 def factor_to_si(drive: Description, ours: str, theirs: str, units: Mapping[str, str]) -> float:
     """Return what one of the drive's unit is in SI; raise ``InputError`` for another quantity."""
     name = units.get(theirs, drive.variable(theirs).unit or "")
-    unit = unit_by_name(name) if theirs in units else drive.units.get(name)
+    unit = parse_unit(name) if theirs in units else drive.units.get(name)
     if not name:
         return 1.0
     if unit is None or unit.exponents != UNITS[ours]:

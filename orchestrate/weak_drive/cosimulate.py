@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import NOT_NUMBERS, InputError
 from ..fmu.description import Description, describe_runnable
-from ..fmu.exported import finder
+from ..fmu.exported import make_fmu_finder
 from ..fmu.instance import REAL_TYPES
 from ..fmu.models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER
 from ..lazy import Unpack, xr
@@ -166,7 +166,7 @@ def cosimulate(
         parameters = {**drive.parameters(), **parameters}
         model = MOTOR_SHAKER if isinstance(drive, Drive) else ELECTRODYNAMIC_SHAKER
         ours = {name: name for name in OURS if structure is not None or name not in FORCE}
-        connect, drive = connect or ours, finder(running)(model).path
+        connect, drive = connect or ours, make_fmu_finder(running)(model).path
     path = checked_path("drive", drive).resolve()
     description = describe_runnable(path)
     units = checked_units(units, description)
@@ -196,7 +196,7 @@ def cosimulate(
         points=points,
     )
     check_input_connections(job.inputs, links)
-    found = compute_dataset(job, running, finder(running), job.drive_sha256 if foreign else "")
+    found = compute_dataset(job, running, make_fmu_finder(running), job.drive_sha256 if foreign else "")
     warn_of_run(found, links, estimate)
     return found
 

@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import FmuError, InputError
-from ..fmu.begin import REST, begin
 from ..fmu.description import Description, describe
 from ..fmu.events import BOX as BOX_ACCELERATION
 from ..fmu.events import PLAYED, Player
 from ..fmu.instance import Instance
 from ..fmu.models import OSCILLATOR
+from ..fmu.start import REST, start_motion
 from ..lazy import xr
 from ..model import Excitation
 from ..model.arguments import Count, Positive
@@ -70,7 +70,7 @@ class CosimulationRun(Run):
     ) -> None:
         self.job, self.parts = job, parts
         still = Excitation(frequency=job.structure.omega, amplitude=0.0)
-        begin(oscillator, job.structure, still, job.start)
+        start_motion(oscillator, job.structure, still, job.start)
         inputs = Inputs(job.inputs, drive.description)
         connection = replace(job.initialize_and_connect(drive, inputs), recorded=job.record)
         fixed = drive.description.has_fixed_step or drive.description.internal_step

@@ -399,7 +399,7 @@ def couple(
     >>> bool(abs(run.missing[-1]) < 1e-6 * run.motor[-1])
     True
     """
-    from ..fmu.exported import finder
+    from ..fmu.exported import make_fmu_finder
     from ..running.runner import compute_dataset
 
     if spin_up is None and speed_start is not None:
@@ -410,4 +410,4 @@ def couple(
     job = make_couple_job(
         structure, drive, schedule, scheme, speed_start, control, hold, hysteresis
     )
-    return compute_dataset(job, running, finder(running))
+    return compute_dataset(job, running, make_fmu_finder(running))

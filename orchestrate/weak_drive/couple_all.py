@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from ..fmu.exported import finder
+from ..fmu.exported import make_fmu_finder
 from ..lazy import Unpack, xr
 from ..model.drive import Drive
 from ..model.ranges import checked_range
@@ -121,7 +121,7 @@ def couple_all(
         raise InputError("kinds, rates: expected one of each, or more")
     datasets = [
         run.assign_coords(eta0=run.eta0.reset_coords(drop=True), Omega=run.Omega)
-        for run in compute_datasets(jobs, running, finder(running))
+        for run in compute_datasets(jobs, running, make_fmu_finder(running))
     ]
     texts_of_jumps = {name: "" for name, values in datasets[0].items() if values.dtype.kind == "U"}
     missing = dict.fromkeys(datasets[0].data_vars, np.nan) | texts_of_jumps

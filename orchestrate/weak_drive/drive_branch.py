@@ -18,7 +18,7 @@ from ..dynamics.bifurcation_kinds import KINDS, Kind
 from ..dynamics.continuation import SOLVER_ERRORS
 from ..dynamics.tracer import LIMIT, Bifurcation, BranchSegment, ContinuationSettings
 from ..errors import InputError
-from ..fmu.exported import finder
+from ..fmu.exported import make_fmu_finder
 from ..fmu.instance import Instance
 from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
@@ -318,4 +318,4 @@ def drive_branch(
     most, period, steps = (checked_integer(*count) for count in least)
     own = (float(longest), most, period, steps, settle)
     job = DriveBranchJob("drive_branch", structure, drive, (first, last), *own)
-    return compute_dataset(job, running, finder(running))
+    return compute_dataset(job, running, make_fmu_finder(running))

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..constants import TURN
 from ..errors import InputError
-from ..fmu.exported import finder
+from ..fmu.exported import make_fmu_finder
 from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer, checked_number
@@ -211,7 +211,7 @@ def drive_spectra(
         jobs.append(
             DriveSpectraJob("drive_spectra", structure, drive, approach, hold, step, *record)
         )
-    find_fmu = finder(running)
+    find_fmu = make_fmu_finder(running)
     if voltage is None:
         fmus = {model: find_fmu(model).path for model in DriveSpectraJob.models}
         jobs = [next((job for job in jobs if job.is_captured(fmus)), jobs[-1])]

@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..errors import InputError
-from ..fmu.exported import finder
+from ..fmu.exported import make_fmu_finder
 from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_list
@@ -216,4 +216,4 @@ def jump_voltages(
         raise InputError(f"over = {over!r}: {expected}")
     varied = checked_parameter_values(over, values, System(structure, drive))
     job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme, over or "", varied)
-    return compute_dataset(job, running, finder(running))
+    return compute_dataset(job, running, make_fmu_finder(running))

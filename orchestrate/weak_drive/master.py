@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..fmu.c_library import loaded_loop
+from ..fmu.c_library import load_loop
 from ..fmu.channel import Channel, SimulationEnded, StepAnswer
 from ..fmu.events import CUBICS
-from ..fmu.fmi import NOT_FINITE, Fmi, references
+from ..fmu.fmi import NOT_FINITE, Fmi, value_references
 from ..fmu.instance import REAL_TYPES, WARNING, Instance, function_addresses
 from ..model.ranges import checked_range
 from .connection import FORCE, MOTOR, PUSHES, Connection, Link
@@ -85,10 +85,10 @@ class Side(ctypes.Structure):
         fmi = Fmi.from_instance(instance)
         _, *states = function_addresses(instance, STATES[fmi.version])
         rest = [None] * (len(STATES[2]) - len(states))
-        inputs, outputs = channel.references()
+        inputs, outputs = channel.input_and_output_references()
         buffers = (pointer(channel.kept), pointer(channel.answer))
         counts = (len(inputs), len(outputs))
-        names = (inputs, outputs, references(instance, impacts))
+        names = (inputs, outputs, value_references(instance, impacts))
         return cls(fmi, *states, *rest, *names, *counts, *buffers, instance.description.needs_tool)
 
 
@@ -125,7 +125,7 @@ class Pair(ctypes.Structure):
 
 @functools.cache
 def load_couple_loop() -> Any:
-    library = loaded_loop("couple")
+    library = load_loop("couple")
     sizes = (c_uint * 4).in_dll(library, "sizes_of_couple")
     assert [*sizes] == [ctypes.sizeof(Pair), MOTION, DRIVE, END + MOTOR.outputs.index("angle")]
     library.couple.argtypes = [*[c_void_p] * 5, c_int, c_double]
@@ -242,8 +242,8 @@ class Master:
         recorded = np.empty((count, len(self.connection.recorded)))
         self.pair.table = recorded.ctypes.data
         for values in pieces:
-            self.oscillator.begin()
-            self.drive.channel.begin()
+            self.oscillator.clear_messages()
+            self.drive.channel.clear_messages()
             buffers = (now, rows[at:], ends[intervals:], values)
             addresses = (one.ctypes.data for one in buffers)
             done = load_couple_loop()(byref(self.pair), *addresses, len(values), h or self.scheme.h)
@@ -291,7 +291,7 @@ class Master:
         for name, links in zip(("force", "motion", "pushes"), drive.numbered_links, strict=True):
             setattr(pair, name, Links.from_numbered(links))
         names = () if self._reads_recorded_in_python else connection.recorded
-        pair.cubic, pair.recorded = connection.first_cubic, references(drive.instance, names)
+        pair.cubic, pair.recorded = connection.first_cubic, value_references(drive.instance, names)
         pair.recorded_count, pair.stride = len(names), self.input_width
         pair.scratch = (c_double * (2 * pair.drive.input_count))()
         return pair
@@ -306,7 +306,7 @@ class Master:
             if not (side.status or side.warned or channel.answer.terminate):
                 continue
             if side.warned:
-                channel.instance.check("the step", WARNING)
+                channel.instance.check_status("the step", WARNING)
                 side.warned = 0
             if side.status == NOT_FINITE:
                 channel.get()  # it raises
@@ -314,7 +314,7 @@ class Master:
                 with suppress(SimulationEnded):
                     channel.check_step(max(side.status, 0), side.status != NOT_WHOLE)
             else:
-                raise side.error(channel.instance)
+                raise side.error_of_failed_call(channel.instance)
 
     # -- to go on elsewhere --
 

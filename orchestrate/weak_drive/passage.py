@@ -14,7 +14,7 @@ import numpy as np
 
 from ..constants import TURN
 from ..errors import InputError
-from ..fmu.exported import finder
+from ..fmu.exported import make_fmu_finder
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer
 from ..model.drive import Drive
@@ -159,7 +159,7 @@ def passage(
     scheme = couple.scheme_from_arguments(structure, step, sampled=True)
     run = couple.make_couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
     fields = {**vars(run), "name": run.name.replace("couple", "passage"), "around": around}
-    return compute_dataset(PassageJob(**fields), running, finder(running))
+    return compute_dataset(PassageJob(**fields), running, make_fmu_finder(running))
 
 
 def waterfall(

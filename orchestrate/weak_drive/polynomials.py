@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..fmu.c_library import loaded_loop
+from ..fmu.c_library import load_loop
 
 Cubic = tuple[Any, ...]  # four: value and first to third time derivative at a step's beginning
 
@@ -33,7 +33,7 @@ def call_cubic_function(name: str, numbers: Sequence[Any]) -> NDArray[np.float64
     rows = np.ascontiguousarray(np.stack(np.broadcast_arrays(*numbers), axis=-1), dtype=float)
     found = np.empty((*rows.shape[:-1], 4))
     tables = (c_void_p(rows.ctypes.data), rows.size // 5, c_void_p(found.ctypes.data))
-    getattr(loaded_loop("couple"), name)(*tables)
+    getattr(load_loop("couple"), name)(*tables)
     return found
 
 

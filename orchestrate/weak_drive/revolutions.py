@@ -8,7 +8,7 @@ from ctypes import c_size_t, c_void_p
 
 import numpy as np
 
-from ..fmu.c_library import loaded_loop
+from ..fmu.c_library import load_loop
 from ..model.structure import Structure
 from ..running.job import Table
 from .energy_balance import Energies, EnergyBalance
@@ -77,7 +77,7 @@ class Revolutions:
         values, places, last, rows = (
             c_void_p(one.ctypes.data) for one in (table, ends, self.last, found)
         )
-        find = loaded_loop("couple").find_revolutions
+        find = load_loop("couple").find_revolutions
         return found[: find(values, along, across, places, len(ends), last, rows)]
 
     def _raise_largest(self, largest: Floats) -> None:

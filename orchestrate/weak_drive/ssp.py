@@ -283,9 +283,9 @@ def write_ssp(
 
 
 def default_fmu_path(model: str) -> Path:
-    from ..fmu.exported import find
+    from ..fmu.exported import find_or_export
 
-    return find(model, "fmi2").path
+    return find_or_export(model, "fmi2").path
 
 
 def motor_component(

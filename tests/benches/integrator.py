@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from orchestrate.fmu.c_library import loaded_library
+from orchestrate.fmu.c_library import load_library
 
 from .system import LAWS, Floats, Frictions, ModalSystem, Motion, empty_contacts, empty_springs
 
@@ -44,9 +44,9 @@ class CSystem(ctypes.Structure):
 
 
 @functools.cache
-def load_library() -> Any:
+def integration_function() -> Any:
     """Return the compiled library's integration function; compile it once per process."""
-    run = loaded_library(SOURCE).run
+    run = load_library(SOURCE).run
     run.argtypes = [POINTER(CSystem), c_long, c_double, *[NUMBERS] * 6]
     run.restype = c_long
     return run
@@ -78,7 +78,7 @@ def integrate(
     kept[:, 0] = -np.inf
     keep_alive, passed = to_c_system(system)
     pointers = [pointer_to(array) for array in (base, q, v, out, kept, peaks)]
-    done = load_library()(byref(passed), steps, step, *pointers)
+    done = integration_function()(byref(passed), steps, step, *pointers)
     del keep_alive
     if done != steps:
         raise UnboundedMotionError(f"after {done * step:.4g} s")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate.fmu import OSCILLATOR, find
+from orchestrate.fmu import OSCILLATOR, find_or_export
 
 
 @pytest.fixture
@@ -23,4 +23,4 @@ def budget(request: pytest.FixtureRequest) -> int:
 @pytest.fixture(scope="session")
 def fmu(exported: Path) -> Path:
     """The oscillator's native FMU of FMI 3.0."""
-    return find(OSCILLATOR).path
+    return find_or_export(OSCILLATOR).path

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import orchestrate
 from orchestrate.errors import InputError
 from orchestrate.flags import flag_words
-from orchestrate.fmu import EventInstance, Instance, begin
+from orchestrate.fmu import EventInstance, Instance, start_motion
 from orchestrate.model import Excitation, Structure
 from tests.draws import draw_structure
 
@@ -50,7 +50,7 @@ class ReportedMotion:
         """Return the states at phase 0 after 0, 1, ... periods."""
         states, period = [self.state], self.excitation.period
         with Instance(self.fmu) as instance:
-            begin(instance, self.structure, self.excitation, self.state)
+            start_motion(instance, self.structure, self.excitation, self.state)
             for i in range(self.periods):
                 instance.step(i * period, (i + 1) * period)
                 states.append(np.array(instance.get("x1", "x2", "v1", "v2")))
@@ -83,8 +83,8 @@ class ReportedMotion:
         """Count impacts over some periods, from the middle of the longest flight or contact."""
         span = self.periods * self.excitation.period
         with EventInstance(self.fmu) as instance:
-            begin(instance, self.structure, self.excitation, self.state)
-            times = instance.impacts(0.0, (TURNS + 1) * span).time
+            start_motion(instance, self.structure, self.excitation, self.state)
+            times = instance.record_impacts(0.0, (TURNS + 1) * span).time
         if not len(times):
             return 0
         once = times[times <= span]

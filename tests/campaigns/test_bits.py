@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from orchestrate.errors import FmuError, InputError
-from orchestrate.fmu import OSCILLATOR, Instance, find
+from orchestrate.fmu import OSCILLATOR, Instance, find_or_export
 
 from .findings import expect_none
 from .parameter_sets import ParameterSet, draw_parameter_set
@@ -38,7 +38,7 @@ def to_hexadecimal(values: Iterable[Any]) -> Bits:
 def end_by_fmu(drawn: ParameterSet, grid: Sequence[float], form: str = "fmi3") -> Bits:
     """Return the outputs at the end of a grid; else one text, why a step does not finish."""
     values = {**drawn.values, "bonded": bool(drawn.values.get("bonded"))}
-    with Instance(find(OSCILLATOR, form).path) as instance:
+    with Instance(find_or_export(OSCILLATOR, form).path) as instance:
         try:
             instance.initialize(drawn.start_time, **values)
         except (FmuError, InputError):
@@ -55,10 +55,10 @@ def end_by_fmu(drawn: ParameterSet, grid: Sequence[float], form: str = "fmi3") -
 @functools.cache
 def web_module() -> Any:
     """Return the kernel's WebAssembly module under wasmtime."""
-    from orchestrate.fmu.webassembly import web_kernel
+    from orchestrate.fmu.webassembly import find_or_compile_web_kernel
     from tests.web_instance import WebInstance
 
-    return WebInstance(web_kernel())
+    return WebInstance(find_or_compile_web_kernel())
 
 
 def end_by_web(drawn: ParameterSet, grid: Sequence[float]) -> Bits:

@@ -16,7 +16,7 @@ import pytest
 from mpmath import mp
 
 from orchestrate.fmu import describe
-from orchestrate.fmu.unpacked import unpacked
+from orchestrate.fmu.unpacked import unpack_once
 from tests import exact_motion, importers
 
 from .findings import expect_none
@@ -58,7 +58,7 @@ def compile_roots(fmu: Path) -> tuple[str, str]:
     atexit.register(shutil.rmtree, folder)
     source = Path(__file__).parent / "native" / "roots.c"
     program, found = importers.compile_against(fmu, folder, [source], OPTIONS), describe(fmu)
-    return str(program), str(unpacked(found) / f"binaries/x86_64-linux/{found.identifier}.so")
+    return str(program), str(unpack_once(found) / f"binaries/x86_64-linux/{found.identifier}.so")
 
 
 def run_roots(fmu: Path, *arguments: object) -> str:

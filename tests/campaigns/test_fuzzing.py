@@ -10,7 +10,7 @@ import pytest
 from fmu_src.export import forms
 from fmu_src.export.sources import load_model
 from fmu_src.runtime.table import BOOLEAN, INTEGER, explain
-from orchestrate.fmu import MODELS, find
+from orchestrate.fmu import MODELS, find_or_export
 from tests import importers
 
 from .findings import expect_none
@@ -26,7 +26,13 @@ def test_steps_end_in_the_whole_declared_range(fmu, version, model, seed, budget
 
     Replay one: ``importer BINARY replay declared < FILE``.
     """
-    parts = version, model, find(model, version).path.parents[1], tmp_path, importers.SANITIZE
+    parts = (
+        version,
+        model,
+        find_or_export(model, version).path.parents[1],
+        tmp_path,
+        importers.SANITIZE,
+    )
     program, sequence = importers.importer_with_sanitizer(*parts), tmp_path / "sequence"
     arguments = "declared", seed % 2**31, budget, sequence
     ended = program.run(*arguments, timeout=36_000, success=False)

@@ -10,7 +10,7 @@ from functools import reduce
 from operator import add
 from pathlib import Path
 
-from orchestrate.fmu import OSCILLATOR, find
+from orchestrate.fmu import OSCILLATOR, find_or_export
 from orchestrate.model import Structure
 from tests import importers
 
@@ -76,7 +76,7 @@ def main() -> None:
     """Run communication steps and print a table of their times, us."""
     parser = argparse.ArgumentParser(prog="python -m tests.real_time", description=__doc__)
     parser.add_argument("--steps", type=int, default=100_000_000, help="to be timed (default 1e8)")
-    steps, fmu = parser.parse_args().steps, Path(find(OSCILLATOR).path)
+    steps, fmu = parser.parse_args().steps, Path(find_or_export(OSCILLATOR).path)
     columns = ["eta", "steps", *PARTS, "impacts", "contacts", "most evaluations"]
     print(f"| {' | '.join(columns)} |\n|{'---|' * len(columns)}")
     rows = []

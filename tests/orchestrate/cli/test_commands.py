@@ -16,7 +16,7 @@ from matplotlib import image
 import orchestrate
 from orchestrate import InputError, Structure, cli
 from orchestrate.cli.options import OfBox
-from orchestrate.fmu import OSCILLATOR, find
+from orchestrate.fmu import OSCILLATOR, find_or_export
 
 from ...exports import BUILD
 from ...sparing import ordinary
@@ -258,7 +258,7 @@ def test_a_finished_result_describes_itself_and_stays(ask, tmp_path, monkeypatch
     (result,), (picture,) = folder.glob("*.nc"), folder.glob("*.png")
     assert re.fullmatch("sweep_paper_[0-9a-f]{6}", result.stem) and picture.stem == result.stem
     assert "largest gap: xi_Rel = " in out and str(picture) in out and shows_something(picture)
-    data, fmu = xr.load_dataset(result), find(OSCILLATOR)
+    data, fmu = xr.load_dataset(result), find_or_export(OSCILLATOR)
     assert data.xi_rel.shape == (7, 12) and data.attrs["call"].startswith("sweep(")
     about = {"e": 0.7, "d1": 0.01, "k2": 1.2, "transient": 20, "samples": 12, "direction": "up"}
     about |= {"fmu_guid": fmu.guid, "fmu_model": fmu.name, "fmi_version": fmu.fmi_version}

@@ -12,7 +12,7 @@ import pytest
 from orchestrate import Structure, cosimulate, sweep
 from orchestrate.cli import main
 from orchestrate.errors import FmuError, WorkerError
-from orchestrate.fmu import ELECTRODYNAMIC_SHAKER, OSCILLATOR, find
+from orchestrate.fmu import ELECTRODYNAMIC_SHAKER, OSCILLATOR, find_or_export
 from tests.orchestrate.fmu.misbehaving import misbehaving
 
 from .commands import all_end, below, end, kill, wait_for
@@ -65,7 +65,7 @@ def bad(exported, tmp_path_factory):
 
     def made(kind, model=OSCILLATOR):
         path = folder / f"{kind}-{model}.fmu".replace(" ", "-")
-        return path if path.exists() else misbehaving(find(model).path, path, kind)
+        return path if path.exists() else misbehaving(find_or_export(model).path, path, kind)
 
     return made
 

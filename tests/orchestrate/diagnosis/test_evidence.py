@@ -13,7 +13,7 @@ from orchestrate.diagnosis.hypotheses import (
 )
 from orchestrate.diagnosis.multistart import Search, misfit
 from orchestrate.diagnosis.standard_errors import estimate_with_errors
-from orchestrate.fmu import OSCILLATOR, Player, find
+from orchestrate.fmu import OSCILLATOR, Player, find_or_export
 from tests.benches.bench import Bench
 from tests.benches.excitation import Swept
 from tests.benches.lumped import Faces, Halves
@@ -23,7 +23,7 @@ from .records import BEAM, SWEEP, record, record_evidence
 
 @pytest.fixture(scope="module")
 def player():
-    with Player(find(OSCILLATOR).path) as player:
+    with Player(find_or_export(OSCILLATOR).path) as player:
         yield player
 
 

@@ -2,16 +2,16 @@
 
 import numpy as np
 
-from orchestrate.fmu import OSCILLATOR, EventInstance, begin, find
+from orchestrate.fmu import OSCILLATOR, EventInstance, find_or_export, start_motion
 
 
 def flown(structure, excitation, states, periods=1):
     """States of the FMU some periods after states at phase 0."""
     ends = []
-    with EventInstance(find(OSCILLATOR).path) as instance:
+    with EventInstance(find_or_export(OSCILLATOR).path) as instance:
         for state in np.atleast_2d(states):
-            begin(instance, structure, excitation, state)
-            instance.impacts(0.0, periods * excitation.period)
+            start_motion(instance, structure, excitation, state)
+            instance.record_impacts(0.0, periods * excitation.period)
             ends.append(instance.read("x1", "x2", "v1", "v2").copy())
     return np.array(ends)
 

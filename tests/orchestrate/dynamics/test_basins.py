@@ -10,7 +10,7 @@ import xarray as xr
 import orchestrate
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.basins import Plane, PlaneAxis, basin
-from orchestrate.fmu import OSCILLATOR, REST, STATE, Instance, begin, find
+from orchestrate.fmu import OSCILLATOR, REST, STATE, Instance, find_or_export, start_motion
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 
@@ -59,7 +59,7 @@ def test_responses_of_a_plane_at_another_phase_are_those_of_its_starts():
     excitation = Excitation.nondimensional(ETA, PAPER, phase=1.0)
     states, _ = starts(plane["x"], plane["y"], REST)
     labels = found.attractor_of.values
-    with Instance(find(OSCILLATOR).path) as instance:
+    with Instance(find_or_export(OSCILLATOR).path) as instance:
         for state, label in zip(states.reshape(-1, 4), labels.ravel(), strict=True):
             n = int(found.multiplicity[label])
             assert returns_after(instance, excitation, state, 3000) == n
@@ -71,7 +71,7 @@ def test_responses_of_a_plane_at_another_phase_are_those_of_its_starts():
 
 def returns_after(instance, excitation, state, transient):
     """After how many periods, 1 or 2, a motion is back where it is after a transient; else 0."""
-    begin(instance, PAPER, excitation, state)
+    start_motion(instance, PAPER, excitation, state)
     instance.step(0.0, transient * excitation.period)
     done = [transient, transient + 1, transient + 2]
     points = [instance.get(*STATE)]

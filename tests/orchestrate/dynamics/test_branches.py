@@ -13,7 +13,7 @@ from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.branches import branch, complete_excitation
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.flags import flag_words
-from orchestrate.fmu import OSCILLATOR, EventInstance, begin, find
+from orchestrate.fmu import OSCILLATOR, EventInstance, find_or_export, start_motion
 from orchestrate.model import Excitation, Structure
 from orchestrate.response import questions
 
@@ -144,7 +144,7 @@ def test_permanent_contact_is_followed_until_it_is_lost():
     assert found.permanent_contact.values.all()
     assert found.fmu_same_impacts.values.mean() > 0.95
     (lost,) = values(found, CONTACT_LOST)
-    with EventInstance(find(OSCILLATOR).path) as instance:
+    with EventInstance(find_or_export(OSCILLATOR).path) as instance:
         assert contacts(instance, lost - 1e-5, found) > 0
         assert contacts(instance, lost + 1e-5, found) == 0
 
@@ -152,10 +152,10 @@ def test_permanent_contact_is_followed_until_it_is_lost():
 def contacts(instance, eta, found):
     """Permanent contacts of the FMU over 20 periods, from a branch's last orbit on."""
     excitation = Excitation.nondimensional(eta, PAPER)
-    begin(instance, PAPER, excitation, found.state.values[-1, 0])
-    instance.impacts(0.0, 500 * excitation.period)
+    start_motion(instance, PAPER, excitation, found.state.values[-1, 0])
+    instance.record_impacts(0.0, 500 * excitation.period)
     before = instance.get("contact_count")[0]
-    instance.impacts(500 * excitation.period, 520 * excitation.period)
+    instance.record_impacts(500 * excitation.period, 520 * excitation.period)
     return instance.get("contact_count")[0] - before
 
 

@@ -11,7 +11,7 @@ from fmu_src.kernels import orbits
 from orchestrate.constants import TURN
 from orchestrate.dynamics.closed_form import FREE, OUTER, ClosedForm
 from orchestrate.dynamics.periodic_orbit import ImpactSequence, PeriodicOrbit
-from orchestrate.fmu.c_library import loaded_loop
+from orchestrate.fmu.c_library import load_loop
 from orchestrate.model import Excitation, Structure
 
 ENTRIES = {
@@ -60,7 +60,7 @@ def test_python_and_c_have_equal_bits(seed):
         entry(memory, 0.0)
         first = orbits.TABLE + rows.size
         assert result.ravel().tolist() == memory[first : first + result.size], name
-    assert loaded_loop("orbits")
+    assert load_loop("orbits")
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -17,7 +17,7 @@ from orchestrate.dynamics.decision import (
     phase_far_from_impacts,
 )
 from orchestrate.dynamics.settling import ReachedMotion, run_until_settled
-from orchestrate.fmu import OSCILLATOR, REST, EventInstance, Instance, find
+from orchestrate.fmu import OSCILLATOR, REST, EventInstance, Instance, find_or_export
 from orchestrate.model import Excitation, Structure
 from orchestrate.model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from orchestrate.response.questions import Point
@@ -68,7 +68,7 @@ def test_impacts_are_counted_from_a_pause(monkeypatch):
         step=lambda begin, end: now.__setitem__(0, end),
         get=lambda name: [np.count_nonzero(times <= now[0])],
     )
-    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
     assert count_impacts_starting_in_pause(instance, point, REST, 1) == 1
 
 
@@ -77,7 +77,10 @@ def test_starts_that_come_to_a_known_orbit_are_not_run_on():
     gap, rate = np.random.default_rng(3).uniform([[0.0], [-1.3]], 1.3, (2, 12)) / 2.0
     starts = np.column_stack([-gap, gap, -rate, rate])
     alone = [decided_from(PAPER, 1.315, start)[0] for start in starts]
-    with Instance(find(OSCILLATOR).path) as plain, EventInstance(find(OSCILLATOR).path) as eventful:
+    with (
+        Instance(find_or_export(OSCILLATOR).path) as plain,
+        EventInstance(find_or_export(OSCILLATOR).path) as eventful,
+    ):
         decider = MotionDecider(plain, eventful, point_of(PAPER, 1.315), USUAL)
         together = decider.decide_all(starts)
         again = run_until_settled(plain, decider.point, starts, USUAL, decider.known)
@@ -144,7 +147,7 @@ def test_each_threshold_of_a_known_motion(decided, distance, comes, known):
     ],
 )
 def test_each_threshold_of_a_response_that_comes_to_an_orbit(monkeypatch, before, after, comes):
-    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
     decider = Scripted(path=(before, after))
     assert MotionDecider.converges_to(decider, REST, decider.motion(), 1) == comes
     periods = sum(decider.steps) / decider.point.excitation.period
@@ -153,7 +156,7 @@ def test_each_threshold_of_a_response_that_comes_to_an_orbit(monkeypatch, before
 
 def test_a_response_that_comes_to_another_state_is_on_another_orbit(monkeypatch):
     """One of 6 periods is nearer to one of 32 at some phases than at others."""
-    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
     for places in ((1, 1), (1, 2)):
         decider = Scripted(path=(0.05, 0.01), places=places)
         assert MotionDecider.converges_to(decider, REST, decider.motion(), 1) == (places == (1, 1))
@@ -161,7 +164,7 @@ def test_a_response_that_comes_to_another_state_is_on_another_orbit(monkeypatch)
 
 @pytest.mark.parametrize(("left", "comes"), [(0.99e-9, True), (1.01e-9, False)])
 def test_what_rounding_leaves_of_a_deviation_does_not_count(monkeypatch, left, comes):
-    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
     decider = Scripted(path=(1e-9, left), same=1e-12)
     assert MotionDecider.converges_to(decider, REST, decider.motion(multiplier=1e-9), 1) == comes
 
@@ -180,7 +183,7 @@ def test_what_rounding_leaves_of_a_deviation_does_not_count(monkeypatch, left, c
     ],
 )
 def test_how_long_a_response_is_watched(monkeypatch, multiplier, n, longest, periods, own):
-    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
     turns = Scripted(path=(0.05, 0.0), longest=longest)
     motion = turns.motion(multiplier=multiplier, multiplicity=n)
     MotionDecider.converges_to(turns, REST, motion, own)
@@ -232,7 +235,7 @@ def test_an_impact_at_the_sampled_phase_does_not_matter():
 
 @pytest.mark.parametrize(("away", "stays"), [(0.99e-5, True), (1.01e-5, False)])
 def test_each_threshold_of_a_run_that_stays_on_an_orbit(monkeypatch, away, stays):
-    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
     decider = Scripted(path=(away,))
     assert decider.fmu_stays_on(decider.motion()) == stays
 
@@ -243,10 +246,12 @@ def test_each_threshold_of_a_run_that_stays_on_an_orbit(monkeypatch, away, stays
 )
 def test_an_orbit_is_one_to_which_the_fmu_returns(monkeypatch, away, impacts, period, repeats):
     """`returns`, with the same impacts and in the same period."""
-    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
     decider = Scripted()
     found = SimpleNamespace(time=[0.0] * impacts)
-    decider.eventful = SimpleNamespace(impacts=lambda begin, end: found, read=lambda *names: None)
+    decider.eventful = SimpleNamespace(
+        record_impacts=lambda begin, end: found, read=lambda *names: None
+    )
     motion, ends = decider.motion(), iter([(0, 1.0), (period, away)])
     motion.orbit = SimpleNamespace(sequence=SimpleNamespace(impacts=1))
     motion.states, motion.nearest_state_at_free_phase = [REST], lambda state: next(ends)
@@ -290,8 +295,8 @@ def test_a_guess_begins_in_the_middle_of_the_longest_pause(monkeypatch, times, b
     decider.point = Point(PAPER, Excitation(frequency=TURN / 6.0, amplitude=1.0))
     decider.system = SimpleNamespace(closed_form=lambda values: None)
     found = SimpleNamespace(time=np.array(times))
-    decider.eventful = SimpleNamespace(impacts=lambda *span: spans.append(span) or found)
-    monkeypatch.setattr(decision, "begin", lambda *asked: None)
+    decider.eventful = SimpleNamespace(record_impacts=lambda *span: spans.append(span) or found)
+    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
     monkeypatch.setattr(decision, "guess_from_impacts", lambda *given: given[0])
     guess, phase = decider.guess_and_free_phase(np.array(REST), 1)
     assert phase == pytest.approx(TURN / 6.0 * begun)
@@ -315,8 +320,8 @@ def test_each_threshold_of_newtons_method(monkeypatch, nodes, residual, found):
 
 
 def decided_from(structure, eta, start=REST, settings=USUAL, form="fmi3"):
-    path = find(OSCILLATOR, form=form).path
-    with Instance(path) as plain, EventInstance(find(OSCILLATOR).path) as eventful:
+    path = find_or_export(OSCILLATOR, form=form).path
+    with Instance(path) as plain, EventInstance(find_or_export(OSCILLATOR).path) as eventful:
         events = eventful if form == "fmi3" else None
         decider = MotionDecider(plain, events, point_of(structure, eta), settings)
         return decider.decide(start)[:2]
@@ -363,7 +368,7 @@ def test_chattering_that_ends_in_contact_is_decided_by_its_orbit(eta, e):
 def test_impacts_are_whole_numbers_from_whatever_period_one_counts():
     motion, _ = decided_from(CONTACT, 3.0952, settings=settling_run(transient=2000))
     assert motion.multiplicity in (2, 11)
-    with Instance(find(OSCILLATOR).path) as instance:
+    with Instance(find_or_export(OSCILLATOR).path) as instance:
         counts = {
             count_impacts_starting_in_pause(instance, motion.point, state, motion.multiplicity)
             for state in motion.states

@@ -19,7 +19,15 @@ from orchestrate.dynamics.lyapunov import (
 from orchestrate.dynamics.lyapunov_spectrum import kaplan_yorke_dimension, lyapunov_spectrum
 from orchestrate.dynamics.variational import deviation_matrices_and_contacts, period_in_tau
 from orchestrate.errors import InputError
-from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, find
+from orchestrate.fmu import (
+    OSCILLATOR,
+    REST,
+    STATE,
+    EventInstance,
+    Instance,
+    find_or_export,
+    start_motion,
+)
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
@@ -32,13 +40,13 @@ PUSHED = {"force1": 0.3, "force2": -0.4, "box_acceleration": 0.1}
 
 @pytest.fixture(scope="module")
 def instances(exported):
-    fmu = find(OSCILLATOR).path
+    fmu = find_or_export(OSCILLATOR).path
     with Instance(fmu) as plain, EventInstance(fmu) as eventful:
         yield plain, eventful
 
 
 def settled(instance, point, periods):
-    begin(instance, *point, REST)
+    start_motion(instance, *point, REST)
     instance.step(0.0, periods * point.excitation.period)
     return np.array(instance.get(*STATE))
 
@@ -61,7 +69,7 @@ def test_it_agrees_with_two_neighbours_of_the_fmu(instances, eta, pushes, expect
     scale = np.linalg.norm(shift)
 
     def a_period(state):
-        begin(plain, *point, state)
+        start_motion(plain, *point, state)
         plain.step(0.0, span)
         return np.array(plain.get(*STATE))
 

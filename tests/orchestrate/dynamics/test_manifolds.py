@@ -19,7 +19,7 @@ from orchestrate.dynamics.curve_growth import (
     ItineraryChange,
     shrinking_power,
 )
-from orchestrate.fmu import OSCILLATOR, Instance, begin
+from orchestrate.fmu import OSCILLATOR, Instance, start_motion
 from orchestrate.model.ranges import PUSHES
 from orchestrate.response.questions import make_point
 
@@ -251,7 +251,7 @@ def test_images_of_its_points_lie_on_it():
         numbers = np.flatnonzero((part.iterate.values > 1.0) & (part.iterate.values < 4.0))[::9]
         box = make_point(PAPER, {"eta": 3.0})
         for i in numbers:
-            begin(instance, *box, part.state.values[i])
+            start_motion(instance, *box, part.state.values[i])
             instance.step(0.0, 2.0 * box.excitation.period)
             image = np.array(instance.get("x1", "x2", "v1", "v2"))
             s = float(part.iterate[i]) + 1.0
@@ -271,9 +271,9 @@ def job_fields():
 
 
 def exported_path():
-    from orchestrate.fmu import finder
+    from orchestrate.fmu import make_fmu_finder
 
-    return finder({})(OSCILLATOR).path
+    return make_fmu_finder({})(OSCILLATOR).path
 
 
 def test_breaks_are_rows_of_nan_and_never_connected():

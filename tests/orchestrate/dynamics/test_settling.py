@@ -8,7 +8,7 @@ import pytest
 from orchestrate.dynamics import settling
 from orchestrate.dynamics.settling import run_until_settled, transient_periods
 from orchestrate.errors import InputError
-from orchestrate.fmu import OSCILLATOR, REST, Instance, find
+from orchestrate.fmu import OSCILLATOR, REST, Instance, find_or_export
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 
@@ -62,7 +62,7 @@ def test_each_threshold_of_a_response_that_is_run_on(
 )
 def test_a_response_is_run_on_until_it_is_known(exported, eta, multiplicity, least, most):
     point = Point(PAPER, Excitation.nondimensional(eta, PAPER))
-    with Instance(find(OSCILLATOR).path) as instance:
+    with Instance(find_or_export(OSCILLATOR).path) as instance:
         ((response, periods),) = run_until_settled(instance, point, REST, settling_run())
     assert response.multiplicity == multiplicity
     assert least <= periods <= most

@@ -12,7 +12,15 @@ from orchestrate.dynamics.variational import (
     deviation_matrices_and_contacts,
     period_in_tau,
 )
-from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, find
+from orchestrate.fmu import (
+    OSCILLATOR,
+    REST,
+    STATE,
+    EventInstance,
+    Instance,
+    find_or_export,
+    start_motion,
+)
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.threshold import threshold_amplitudes
@@ -32,7 +40,7 @@ UNLIKE = (
 
 @pytest.fixture(scope="module")
 def instances(exported):
-    fmu = find(OSCILLATOR).path
+    fmu = find_or_export(OSCILLATOR).path
     with Instance(fmu) as plain, EventInstance(fmu) as eventful:
         yield plain, eventful
 
@@ -49,7 +57,7 @@ def pushed_point(structure, eta, size):
 
 def after(instance, point, start, periods=1):
     """State of the FMU some periods after a start."""
-    begin(instance, *point, start)
+    start_motion(instance, *point, start)
     instance.step(0.0, periods * point.excitation.period)
     return np.array(instance.get(*STATE))
 

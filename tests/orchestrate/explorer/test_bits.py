@@ -4,7 +4,7 @@ import struct
 
 import pytest
 
-from orchestrate.fmu.webassembly import layout, web_kernel
+from orchestrate.fmu.webassembly import find_or_compile_web_kernel, layout
 from orchestrate.weak_drive.master import DRIVE, MOTION, Pair
 from tests.web_instance import WebInstance
 
@@ -28,7 +28,7 @@ CASES = {  # frequency, periods, what is set
 
 @pytest.fixture(scope="module")
 def kernel(exported):
-    return web_kernel()
+    return find_or_compile_web_kernel()
 
 
 @pytest.mark.parametrize("case", CASES)

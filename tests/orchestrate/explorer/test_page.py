@@ -9,7 +9,7 @@ import xarray as xr
 import orchestrate
 from orchestrate import cli
 from orchestrate.explorer.page import explore
-from orchestrate.fmu import OSCILLATOR, Instance, begin, find, sampled
+from orchestrate.fmu import OSCILLATOR, Instance, find_or_export, sample_evenly, start_motion
 from orchestrate.model import Excitation
 from orchestrate.model.ranges import PUSHES
 from orchestrate.response.questions import Point
@@ -144,9 +144,9 @@ def test_spectra_and_exponents_are_those_of_python(shown, name):
     shown.run(SPECTRA, numbers_of(structure, pushes), eta, start)
     shown.until("return explorer.parts.length === 2")
     point = Point(structure, Excitation.nondimensional(eta, structure, **pushes))
-    with Instance(find(OSCILLATOR).path) as instance:
-        begin(instance, *point, start)
-        states = sampled(instance, 0.0, 64 * point.excitation.period, 65536)
+    with Instance(find_or_export(OSCILLATOR).path) as instance:
+        start_motion(instance, *point, start)
+        states = sample_evenly(instance, 0.0, 64 * point.excitation.period, 65536)
     expected = acceleration_spectrum(states, 64, point.excitation)[0, :1281]
     amplitude = shown.numbers("explorer.parts[0].delaminated.amplitude")
     np.testing.assert_allclose(amplitude, expected, atol=1e-9 * expected.max())

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate.fmu import FORMS, OSCILLATOR, find
+from orchestrate.fmu import FORMS, OSCILLATOR, find_or_export
 
 
 @pytest.fixture(scope="session")
@@ -12,7 +12,7 @@ def oscillator_in():
     """The oscillator's FMU of a form; native ones cannot be made everywhere."""
 
     def fmu(form: str) -> Path:
-        path = find(OSCILLATOR, form).path
+        path = find_or_export(OSCILLATOR, form).path
         return path if path.parent.name == form else pytest.skip(f"no {form} FMU here")
 
     return fmu

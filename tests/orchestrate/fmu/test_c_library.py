@@ -10,7 +10,7 @@ import pytest
 from fmu_src.export import c_library as sources
 from orchestrate.errors import InputError
 from orchestrate.fmu import c_library, exported
-from orchestrate.fmu.c_library import SOURCES, library_path
+from orchestrate.fmu.c_library import SOURCES, find_or_compile_library
 from tests.faults import FILE_DAMAGE
 
 SOURCE = SOURCES[0]
@@ -31,9 +31,9 @@ def cache(tmp_path, monkeypatch):
 
 def test_it_is_compiled_once_and_others_cannot_write_it(cache):
     folder, made = cache
-    path = library_path(SOURCE, folder)
+    path = find_or_compile_library(SOURCE, folder)
     assert path.read_bytes() == COMPILED
-    assert library_path(SOURCE, folder) == path and len(made) == 1
+    assert find_or_compile_library(SOURCE, folder) == path and len(made) == 1
     for part in (path, sources.digest_file(path), path.parent, path.parent.parent):
         assert not part.stat().st_mode & (stat.S_IWGRP | stat.S_IWOTH)
 
@@ -41,12 +41,12 @@ def test_it_is_compiled_once_and_others_cannot_write_it(cache):
 @pytest.mark.parametrize("damage", [*FILE_DAMAGE, "no digest", "no library"])
 def test_what_is_not_as_it_was_compiled_is_compiled_anew(cache, damage):
     folder, made = cache
-    path = library_path(SOURCE, folder)
+    path = find_or_compile_library(SOURCE, folder)
     if damage.startswith("no"):
         (sources.digest_file(path) if damage == "no digest" else path).unlink()
     else:
         FILE_DAMAGE[damage](path, random.Random(1))
-    assert library_path(SOURCE, folder) == path and path.read_bytes() == COMPILED
+    assert find_or_compile_library(SOURCE, folder) == path and path.read_bytes() == COMPILED
     assert len(made) == 2
 
 
@@ -56,14 +56,14 @@ def test_what_is_not_as_it_was_compiled_is_compiled_anew(cache, damage):
 def test_what_others_could_have_written_is_compiled_anew(cache, part, mode):
     """Their group too, unless it can write these sources."""
     folder, made = cache
-    path = library_path(SOURCE, folder)
+    path = find_or_compile_library(SOURCE, folder)
     planted = b"planted " + COMPILED
     path.write_bytes(planted)
     sources.digest_file(path).write_text(sources.digest(planted))
     parts = path, sources.digest_file(path), path.parent, path.parent.parent
     one = parts[("library", "digest", "folder", "its folder").index(part)]
     one.chmod(one.stat().st_mode | mode)
-    assert library_path(SOURCE, folder) == path and path.read_bytes() == COMPILED
+    assert find_or_compile_library(SOURCE, folder) == path and path.read_bytes() == COMPILED
     assert len(made) == 2
 
 
@@ -71,13 +71,13 @@ def test_what_others_could_have_written_is_compiled_anew(cache, part, mode):
 @pytest.mark.parametrize("shipped", [False, True])
 def test_what_is_somebody_else_s_is_loaded_only_from_the_package(cache, monkeypatch, shipped):
     folder, _ = cache
-    path = library_path(SOURCE, folder)
+    path = find_or_compile_library(SOURCE, folder)
     monkeypatch.setattr(
         "orchestrate.files.trusted_owners", lambda: ({path.stat().st_uid + 1}, set())
     )
     if shipped:
         monkeypatch.setattr(c_library, "SHIPPED", folder)
-        assert library_path(SOURCE, folder) == path
+        assert find_or_compile_library(SOURCE, folder) == path
     else:
         with pytest.raises(InputError, match=f"{path}: others can write .*expected"):
-            library_path(SOURCE, folder)
+            find_or_compile_library(SOURCE, folder)

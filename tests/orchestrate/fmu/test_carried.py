@@ -7,15 +7,17 @@ import numpy as np
 import pytest
 
 from orchestrate import Structure
-from orchestrate.fmu import OSCILLATOR, Instance, begin, find, gap_between
-from orchestrate.fmu.oscillator import respond_library, traits
+from orchestrate.fmu import OSCILLATOR, Instance, find_or_export, gaps_of_states, start_motion
+from orchestrate.fmu.oscillator import respond_library, traits_for_loops
 from orchestrate.model import Excitation
 
 
 def carried(state, one, other, length=1.0, speed=1.0):
     carry, like = respond_library().carry_state, (c_double * 4)()
     carry.argtypes, carry.restype = [c_void_p] * 3 + [c_double] * 2 + [c_void_p], None
-    carry((c_double * 4)(*state), traits(one), traits(other), length, speed, like)
+    carry(
+        (c_double * 4)(*state), traits_for_loops(one), traits_for_loops(other), length, speed, like
+    )
     return np.array(like)
 
 
@@ -38,7 +40,7 @@ def test_a_carried_state_is_one_of_the_other_structure(exported, wall):
         state = [x2 + one.clearance - gap, x2, v1, v2]
         like = carried(state, one, other, *rng.uniform(0.3, 3.0, 2))
         assert not other.wall or like[1] == like[3] == 0.0
-        apart = float(gap_between(like[None], other.clearance)[0])
+        apart = float(gaps_of_states(like[None], other.clearance)[0])
         rounding = 1e-15 * np.abs(like).max()
         assert -rounding <= apart <= (other.stroke or math.inf) + rounding, (state, like)
         if gap == 0.0:
@@ -47,6 +49,6 @@ def test_a_carried_state_is_one_of_the_other_structure(exported, wall):
         elif gap == one.stroke and other.stroke:
             assert apart == pytest.approx(other.stroke, abs=rounding)
             touching[math.inf] += 1
-        with Instance(find(OSCILLATOR).path) as instance:
-            begin(instance, other, Excitation(frequency=1.1, amplitude=0.3), like)
+        with Instance(find_or_export(OSCILLATOR).path) as instance:
+            start_motion(instance, other, Excitation(frequency=1.1, amplitude=0.3), like)
     assert min(touching.values()) > 1

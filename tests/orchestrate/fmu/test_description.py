@@ -8,7 +8,7 @@ import pytest
 from orchestrate.errors import InputError
 from orchestrate.fmu import OSCILLATOR, describe
 from orchestrate.fmu.description import QUIET, digest_of
-from orchestrate.fmu.unit_names import unit_by_name
+from orchestrate.fmu.unit_names import parse_unit
 
 from .altered import altered_fmu
 
@@ -69,11 +69,11 @@ KNOWN = {
 @pytest.mark.parametrize("name", KNOWN)
 def test_a_unit_is_what_its_name_says(name):
     exponents, factor = KNOWN[name]
-    unit = unit_by_name(name)
+    unit = parse_unit(name)
     assert unit is not None and unit.exponents == exponents
     assert unit.factor == pytest.approx(factor, rel=1e-15)
 
 
 @pytest.mark.parametrize("name", ["", "g", "fathom", "1", "m/", "m//s", "%", "m2x"])
 def test_what_is_not_sure_is_not_guessed(name):
-    assert unit_by_name(name) is None
+    assert parse_unit(name) is None

@@ -10,7 +10,7 @@ import pytest
 from orchestrate.errors import FmuError
 from orchestrate.fmu import PLAYED, REST, Player
 from orchestrate.fmu import events as loops
-from orchestrate.fmu.c_library import loaded_loop
+from orchestrate.fmu.c_library import load_loop
 from orchestrate.fmu.events import EventLoop, PlayerCalls, PlayProgress, PlayTask
 from orchestrate.model import Structure
 
@@ -123,5 +123,5 @@ def test_numbers_that_are_not_finite_are_refused(first, event_fmu, tmp_path):
 
 def test_structures_have_the_sizes_of_the_source():
     """A field forgotten on one side would shift all that follow."""
-    sizes = (ctypes.c_uint * 3).in_dll(loaded_loop("play"), "sizes_of_play")
+    sizes = (ctypes.c_uint * 3).in_dll(load_loop("play"), "sizes_of_play")
     assert list(sizes) == [ctypes.sizeof(kind) for kind in (PlayerCalls, PlayTask, PlayProgress)]

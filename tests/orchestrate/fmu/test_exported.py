@@ -16,9 +16,9 @@ from orchestrate.fmu import (
     build,
     describe,
     exported,
-    find,
-    finder,
+    find_or_export,
     is_current_and_trusted,
+    make_fmu_finder,
 )
 
 from .altered import altered_fmu
@@ -43,7 +43,9 @@ def maker(monkeypatch, real):
         target = Path(folder) / form / f"{name}.fmu"
         target.parent.mkdir(parents=True, exist_ok=True)
         source = (
-            real[form] if name == OSCILLATOR else find(name, form, exported.CLONE / "build").path
+            real[form]
+            if name == OSCILLATOR
+            else find_or_export(name, form, exported.CLONE / "build").path
         )
         shutil.copy(source, target)
         return target
@@ -72,13 +74,13 @@ def put(source, folder, form="fmi3", model=OSCILLATOR):
 def test_what_is_missing_is_exported_once(maker, places):
     folder, _ = places
     for _ in range(2):
-        assert find(OSCILLATOR).path == folder / "fmi3" / f"{OSCILLATOR}.fmu"
+        assert find_or_export(OSCILLATOR).path == folder / "fmi3" / f"{OSCILLATOR}.fmu"
     assert maker.asked == [(OSCILLATOR, "fmi3", folder)]
 
 
 def test_what_came_with_the_package_needs_no_export(maker, places, real):
     put(real["fmi3"], places[1])
-    assert find(OSCILLATOR).path == places[1] / "fmi3" / f"{OSCILLATOR}.fmu"
+    assert find_or_export(OSCILLATOR).path == places[1] / "fmi3" / f"{OSCILLATOR}.fmu"
     assert maker.asked == []
 
 
@@ -90,13 +92,13 @@ def test_what_is_damaged_or_out_of_date_is_made_anew(maker, places, real, damage
     elif damage == "empty":
         path.write_bytes(b"")
     elif damage == "other":
-        shutil.copy(find(MOTOR_SHAKER).path, path)
+        shutil.copy(find_or_export(MOTOR_SHAKER).path, path)
         maker.asked.clear()
     else:
         guid = describe(path).guid
         altered_fmu(real["fmi3"], path, instantiationToken=(guid, guid.replace("-", "0")))
     assert not is_current_and_trusted("fmi3", OSCILLATOR, places[0])
-    assert find(OSCILLATOR).guid == describe(real["fmi3"]).guid
+    assert find_or_export(OSCILLATOR).guid == describe(real["fmi3"]).guid
     assert (OSCILLATOR, "fmi3", places[0]) in maker.asked
 
 
@@ -110,11 +112,13 @@ def test_what_others_could_have_planted_in_the_cache_is_made_anew(
     part = path.parent if of_folder else path
     part.chmod(part.stat().st_mode | 0o002)
     for _ in range(2):
-        assert find(OSCILLATOR).path == path
+        assert find_or_export(OSCILLATOR).path == path
     assert maker.asked == [(OSCILLATOR, "fmi3", places[0])]
     assert caplog.text.count("others can write it or its folder") == 1
     part.chmod(part.stat().st_mode | 0o002)
-    assert find(OSCILLATOR, folder=places[0].parent / "cache" / ".." / "cache").path.samefile(path)
+    assert find_or_export(
+        OSCILLATOR, folder=places[0].parent / "cache" / ".." / "cache"
+    ).path.samefile(path)
     assert len(maker.asked) == 1, "a folder that is named is trusted"
 
 
@@ -122,14 +126,14 @@ def test_without_a_compiler_the_python_form_serves(maker, places, caplog):
     exported.warn_once.cache_clear()
     maker.without.update({"fmi2", "fmi3"})
     for _ in range(2):
-        assert find(OSCILLATOR).path == places[0] / "fmi2-python" / f"{OSCILLATOR}.fmu"
+        assert find_or_export(OSCILLATOR).path == places[0] / "fmi2-python" / f"{OSCILLATOR}.fmu"
     assert caplog.text.count("no fmi3 FMU here, fmi2-python serves instead") == 1
 
 
 def test_where_nothing_can_be_made_one_line_says_why(maker, places):
     maker.without.update(FORMS)
     with pytest.raises(InputError) as error:
-        find(OSCILLATOR)
+        find_or_export(OSCILLATOR)
     line = str(error.value)
     assert REASON in line and f"FMU {OSCILLATOR}: none matches" in line and "\n" not in line
 
@@ -137,20 +141,32 @@ def test_where_nothing_can_be_made_one_line_says_why(maker, places):
 def test_an_own_fmu_is_taken_as_it_is(maker, tmp_path, real):
     guid = describe(real["fmi2"]).guid
     own = altered_fmu(real["fmi2"], tmp_path / "own.fmu", guid=(guid, "{mine}"))
-    assert find(OSCILLATOR, fmu=own).guid == "{mine}"
+    assert find_or_export(OSCILLATOR, fmu=own).guid == "{mine}"
     with pytest.raises(InputError, match=f"model {OSCILLATOR}; expected {MOTOR_SHAKER}"):
-        find(MOTOR_SHAKER, fmu=own)
+        find_or_export(MOTOR_SHAKER, fmu=own)
     assert maker.asked == []
 
 
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: find("Oscillator"), "model Oscillator: expected one of TwoMassImpactOscillator"),
-        (lambda: find(OSCILLATOR, "fmi4"), "form fmi4: expected one of fmi2-python, fmi2, fmi3"),
+        (
+            lambda: find_or_export("Oscillator"),
+            "model Oscillator: expected one of TwoMassImpactOscillator",
+        ),
+        (
+            lambda: find_or_export(OSCILLATOR, "fmi4"),
+            "form fmi4: expected one of fmi2-python, fmi2, fmi3",
+        ),
         (lambda: build(names=["Shaker"]), "model Shaker: expected one of"),
-        (lambda: finder({"fmu": {"Oscillator": "a.fmu"}}), "model Oscillator: expected one of"),
-        (lambda: finder({"fmu": "no.fmu"})(OSCILLATOR), "FMU no.fmu: no such file; expected"),
+        (
+            lambda: make_fmu_finder({"fmu": {"Oscillator": "a.fmu"}}),
+            "model Oscillator: expected one of",
+        ),
+        (
+            lambda: make_fmu_finder({"fmu": "no.fmu"})(OSCILLATOR),
+            "FMU no.fmu: no such file; expected",
+        ),
     ],
 )
 def test_refusals(maker, places, call, words):

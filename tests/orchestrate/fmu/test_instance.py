@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrate.errors import FmuError, InputError
-from orchestrate.fmu import REST, STATE, EventInstance, Instance, begin
+from orchestrate.fmu import REST, STATE, EventInstance, Instance, start_motion
 from orchestrate.model import Excitation, Structure
 
 CHAOS = {"box_amplitude": 1.0 / 1.2**2, "box_frequency": 1.2}
@@ -91,8 +91,8 @@ def test_every_impact_is_there(event_fmu):
     chaos = Excitation.nondimensional(1.2, structure)
     with EventInstance(event_fmu) as events, Instance(event_fmu) as instance:
         for one in (events, instance):
-            begin(one, structure, chaos)
-        impacts = events.impacts(0.0, 300.0)
+            start_motion(one, structure, chaos)
+        impacts = events.record_impacts(0.0, 300.0)
         instance.step(0.0, 300.0)
         count, last, contacts = instance.get("impact_count", "impact_time", "contact_count")
     assert len(impacts.time) == count > 50
@@ -104,12 +104,12 @@ def test_begin_sets_all(any_fmu):
     structure = Structure(m1=2.0, m2=3.0, k1=4.0, k2=5.0, d1=0.1, d2=0.2, e=0.3, gamma=1e-5)
     excitation = Excitation(frequency=2.0, amplitude=0.5, phase=1.0)
     with Instance(any_fmu) as instance:
-        begin(instance, structure, excitation, (0.1, 0.2, 0.3, 0.4))
+        start_motion(instance, structure, excitation, (0.1, 0.2, 0.3, 0.4))
         values = {**structure.parameters(), **excitation.inputs()}
         assert instance.get(*values) == list(values.values())
         assert instance.get(*STATE, "phase") == [0.1, 0.2, 0.3, 0.4, 1.0]
         assert instance.get("x_rel_max_on") == [False]
-        begin(instance, structure.as_bonded(), excitation, REST, x_rel_max_on=True)
+        start_motion(instance, structure.as_bonded(), excitation, REST, x_rel_max_on=True)
         assert instance.get("bonded", "x_rel_max_on", "x2") == [True, True, 0.0]
 
 

@@ -12,8 +12,8 @@ import pytest
 
 from fmu_src.version import VERSION
 from orchestrate.errors import InputError, StoreError
-from orchestrate.fmu import FORMS, OSCILLATOR, Instance, describe, find
-from orchestrate.fmu.unpacked import unpacked
+from orchestrate.fmu import FORMS, OSCILLATOR, Instance, describe, find_or_export
+from orchestrate.fmu.unpacked import unpack_once
 from orchestrate.temporary import PREFIX, process_temporary_folder
 from tests.campaigns import archives
 
@@ -81,12 +81,12 @@ def test_what_a_killed_process_left_is_removed_by_the_next_and_nothing_else(proc
 
 def test_a_process_unpacks_an_fmu_once(any_fmu, tmp_path):
     with Instance(any_fmu), Instance(any_fmu, name="second"):
-        first = unpacked(describe(any_fmu))
+        first = unpack_once(describe(any_fmu))
     stamp = (first / "modelDescription.xml").stat().st_mtime_ns
     copy = tmp_path / "copy.fmu"
     copy.write_bytes(any_fmu.read_bytes())
     with Instance(copy):
-        assert unpacked(describe(copy)) == first  # the bytes decide, not the name
+        assert unpack_once(describe(copy)) == first  # the bytes decide, not the name
     assert (first / "modelDescription.xml").stat().st_mtime_ns == stamp
 
 
@@ -110,7 +110,7 @@ REFUSED = ("path traversal", "link", "bomb", "crowd of files", "a name twice", "
 
 @pytest.fixture(scope="module")
 def good(exported):
-    return find(OSCILLATOR).path
+    return find_or_export(OSCILLATOR).path
 
 
 @pytest.mark.parametrize("kind", REFUSED[:-1])

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from orchestrate.fmu import ELECTRODYNAMIC_SHAKER, Instance, find
+from orchestrate.fmu import ELECTRODYNAMIC_SHAKER, Instance, find_or_export
 from orchestrate.model import Shaker, ranges, read, write
 from orchestrate.model.toml_files import SHAKERS
 
@@ -57,7 +57,7 @@ def test_the_sets_give_their_rated_force(exported, name):
     shaker = Shaker.from_file(name)
     frequency, forces, limited = 8.0 * 2.0 * math.pi * shaker.resonance, [], set()
     period, amplitude = 2.0 * math.pi / frequency, shaker.voltage_limit
-    with Instance(find(ELECTRODYNAMIC_SHAKER).path) as fmu:
+    with Instance(find_or_export(ELECTRODYNAMIC_SHAKER).path) as fmu:
         fmu.initialize(0.0, **shaker.parameters())
         for k in range(10 * 64):
             time = k * period / 64

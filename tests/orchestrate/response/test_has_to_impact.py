@@ -9,7 +9,7 @@ import pytest
 
 import orchestrate
 from orchestrate import Structure
-from orchestrate.fmu import OSCILLATOR, EventInstance, begin, find
+from orchestrate.fmu import OSCILLATOR, EventInstance, find_or_export, start_motion
 from orchestrate.model import Excitation
 from orchestrate.model.outcomes import UNDECIDED
 from orchestrate.response.questions import Point
@@ -40,9 +40,9 @@ def place_of(structure, eta, amplitude):
 @pytest.mark.parametrize("case", CASES)
 def test_without_its_impacts_nothing_is_decided(case):
     structure, (asked, excitation) = case[0], place_of(*case)
-    with EventInstance(find(OSCILLATOR).path) as instance:
-        begin(instance, structure, excitation)
-        late = instance.impacts(0.0, 3000.0 * excitation.period).time / excitation.period
+    with EventInstance(find_or_export(OSCILLATOR).path) as instance:
+        start_motion(instance, structure, excitation)
+        late = instance.record_impacts(0.0, 3000.0 * excitation.period).time / excitation.period
     assert len(late) and late[0] > 399.0
     swept = orchestrate.sweep(structure, **asked, transient=250, samples=60, **QUIET)
     assert float(swept.impacts_per_period.squeeze()) == 0.0

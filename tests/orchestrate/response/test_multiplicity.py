@@ -15,7 +15,7 @@ from orchestrate.dynamics.orbit_search import (
     why_no_motion,
 )
 from orchestrate.dynamics.turning_points import stroboscopic_states
-from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, find
+from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, find_or_export
 from orchestrate.model import Excitation
 from orchestrate.model.outcomes import IRREGULAR, REPEATED, UNDECIDED
 from orchestrate.response.multiplicity import Decision, call_repetition_kernel, find_repetition
@@ -324,7 +324,7 @@ def denied_by_newton(instance, point, state, periods):
 def test_where_a_response_has_repeated_it_lies_on_a_stable_orbit_of_as_many_periods(
     samples, number
 ):
-    rng, count, path = np.random.default_rng(samples), 0, find(OSCILLATOR).path
+    rng, count, path = np.random.default_rng(samples), 0, find_or_export(OSCILLATOR).path
     with Instance(path) as plain, EventInstance(path) as eventful:
         for _ in range(number):
             structure, eta = draw_structure(rng)

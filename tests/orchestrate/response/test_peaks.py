@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from orchestrate.fmu import OSCILLATOR, EventInstance, Impacts, Instance, begin, find, sampled
+from orchestrate.fmu import (
+    OSCILLATOR,
+    EventInstance,
+    Impacts,
+    Instance,
+    find_or_export,
+    sample_evenly,
+    start_motion,
+)
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.equations import absolute_accelerations_unforced
 from orchestrate.response.questions import Point
@@ -39,12 +47,12 @@ def largest(point: Point, start: np.ndarray, periods: int) -> np.ndarray:
     """Of dense states, and the states on both sides of impacts."""
     structure, excitation = point
     end = periods * excitation.period
-    fmu = find(OSCILLATOR).path
+    fmu = find_or_export(OSCILLATOR).path
     with Instance(fmu) as plain, EventInstance(fmu) as eventful:
-        begin(plain, structure, excitation, start)
-        states = sampled(plain, 0.0, end, periods * DENSE)
-        begin(eventful, structure, excitation, start)
-        impacts = eventful.impacts(0.0, end)
+        start_motion(plain, structure, excitation, start)
+        states = sample_evenly(plain, 0.0, end, periods * DENSE)
+        start_motion(eventful, structure, excitation, start)
+        impacts = eventful.record_impacts(0.0, end)
     states = np.concatenate([states, impacts.state, states_before(impacts, structure.mu)])
     signals = np.hstack([states[:, :2], absolute_accelerations_unforced(states, structure)])
     return np.abs(signals).max(axis=0)
@@ -57,7 +65,7 @@ def test_against_dense_communication_points(structure, eta):
     settings = LoopSettings(
         transient=60, samples=48, tolerance=1e-2, decides=True, peak_periods=PERIODS
     )
-    with Instance(find(OSCILLATOR).path) as instance:
+    with Instance(find_or_export(OSCILLATOR).path) as instance:
         results = response_loop(instance).simulate([point], [(0.0, 0.0, 0.0, 0.0)], settings)
     multiplicity = int(results.counts["multiplicity"][0])
     periods = min(multiplicity, PERIODS) or (PERIODS + 1) // 2

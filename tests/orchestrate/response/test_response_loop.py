@@ -7,7 +7,14 @@ import numpy as np
 import pytest
 
 from orchestrate.errors import FmuError
-from orchestrate.fmu import OSCILLATOR, Instance, begin, find, respond_library, stroboscopic_samples
+from orchestrate.fmu import (
+    OSCILLATOR,
+    Instance,
+    find_or_export,
+    respond_library,
+    sample_stroboscopically,
+    start_motion,
+)
 from orchestrate.fmu.oscillator import OscillatorCalls, ResponseProgress, ResponseTask
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.multiplicity import nearest_state
@@ -27,7 +34,7 @@ SETTINGS = {  # of a loop that decides
 
 @pytest.fixture
 def instance(exported):
-    with Instance(find(OSCILLATOR).path) as instance:
+    with Instance(find_or_export(OSCILLATOR).path) as instance:
         yield instance
 
 
@@ -89,7 +96,7 @@ def test_every_form_runs_through_the_same_loop(instance, form):
     some = list(points(8, 4))
     settings = LoopSettings(transient=20, is_chain=True, **{**SETTINGS, "samples": 9})
     expected = response_loop(instance).simulate(some, np.zeros((1, 4)), settings)
-    with Instance(find(OSCILLATOR, form).path) as other:
+    with Instance(find_or_export(OSCILLATOR, form).path) as other:
         found = response_loop(other).simulate(some, np.zeros((1, 4)), settings)
         assert bits(found) == bits(expected)
         with pytest.raises(FmuError, match="x1_start = nan"):
@@ -102,8 +109,8 @@ def test_a_response_ends_where_it_comes_near_a_known_motion(instance, same):
     structure = Structure.nondimensional()
     point = Point(structure, Excitation.nondimensional(1.0, structure))
     frequency, period = point.excitation.frequency, point.excitation.period
-    begin(instance, *point, (0.0, 1.0, 0.0, 0.0))
-    states, gap = stroboscopic_samples(instance, period, 0, 960)
+    start_motion(instance, *point, (0.0, 1.0, 0.0, 0.0))
+    states, gap = sample_stroboscopically(instance, period, 0, 960)
     orbit = SimpleNamespace(states=states[-1:], gap=gap)
     far = SimpleNamespace(states=states[-2:] + 20.0, gap=gap)
     away = [

@@ -8,7 +8,7 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from orchestrate.fmu import OSCILLATOR, Instance, begin, find, sampled
+from orchestrate.fmu import OSCILLATOR, Instance, find_or_export, sample_evenly, start_motion
 from orchestrate.model import Excitation, Structure
 from orchestrate.model.outcomes import IRREGULAR, REPEATED, UNDECIDED
 from orchestrate.response.multiplicity import DECIDED
@@ -45,11 +45,11 @@ def test_responses_of_a_sweep_are_run_on_each_from_its_own_state(exported):
 def test_a_response_is_what_the_fmu_says_step_by_step():
     excitation = Excitation.nondimensional(1.13, PAPER)
     period = excitation.period
-    with Instance(find(OSCILLATOR).path) as instance:
-        begin(instance, PAPER, excitation, x_rel_max_on=True)
-        states = sampled(instance, 0.0, 20 * period, 20)
+    with Instance(find_or_export(OSCILLATOR).path) as instance:
+        start_motion(instance, PAPER, excitation, x_rel_max_on=True)
+        states = sample_evenly(instance, 0.0, 20 * period, 20)
         before = instance.get("impact_count")[0]
-        states = np.concatenate([states, sampled(instance, 20 * period, 50 * period, 30)])
+        states = np.concatenate([states, sample_evenly(instance, 20 * period, 50 * period, 30)])
         impacts = instance.get("impact_count")[0]
     found = sweep(PAPER, eta=1.13, transient=20, samples=30).isel(eta=0)
     np.testing.assert_allclose(found.xi_rel, states[20:, 1] - states[20:, 0], atol=1e-12)

@@ -7,7 +7,7 @@ import pytest
 
 import orchestrate
 from orchestrate import Structure
-from orchestrate.fmu import OSCILLATOR, Instance, begin, find
+from orchestrate.fmu import OSCILLATOR, Instance, find_or_export, start_motion
 from orchestrate.model import Excitation
 
 from ...sparing import ordinary
@@ -53,7 +53,7 @@ def bisected(instance, structure, frequency):
         if state[1] - state[0] + structure.clearance < 0.0 < structure.clearance:
             return True
         excitation = Excitation(frequency=frequency, amplitude=amplitude)
-        begin(instance, structure, excitation, state)
+        start_motion(instance, structure, excitation, state)
         if structure.clearance < 0.0 and not instance.get("in_contact")[0]:
             return True
         instance.step(0.0, 1.01 * period)
@@ -73,7 +73,7 @@ def bisected(instance, structure, frequency):
 def test_the_fmu_opens_and_touches_at_the_threshold(exported, seed):
     structure, frequency = structure_and_frequency(seed)
     level = orchestrate.contact_threshold(structure, frequency=frequency)
-    with Instance(find(OSCILLATOR).path) as instance:
+    with Instance(find_or_export(OSCILLATOR).path) as instance:
         found = bisected(instance, structure, frequency)
     assert found == pytest.approx(float(level.threshold_amplitude[0]), rel=1e-9)
     assert level.event == ("opens" if structure.clearance < 0.0 else "touches")

@@ -6,7 +6,7 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 
-from orchestrate.fmu import OSCILLATOR, find
+from orchestrate.fmu import OSCILLATOR, find_or_export
 from orchestrate.model import Structure
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.chunk_schedule import ChunkSchedule
@@ -84,7 +84,9 @@ def job(direction: str):
 def played(sweep: SweepJob, workers: int, store=None):
     """The result, and how many values were guessed in vain."""
     with patch.object(SweepJob, "chunk_size", 10):
-        schedule = ChunkSchedule(sweep, store or Store(), {}, {OSCILLATOR: find(OSCILLATOR)})
+        schedule = ChunkSchedule(
+            sweep, store or Store(), {}, {OSCILLATOR: find_or_export(OSCILLATOR)}
+        )
         play(schedule, workers, 1)
     return schedule.result.drop_attrs(), schedule.wasted
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from orchestrate import Drive, Structure
-from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find
+from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find_or_export
 from orchestrate.weak_drive.energy_balance import Energies, EnergyBalance
 from orchestrate.weak_drive.master import Master, Scheme
 from orchestrate.weak_drive.run import oscillator_start_values
@@ -70,7 +70,7 @@ def starts_of(system, state):
 @contextlib.contextmanager
 def master(system, scheme, state, form="fmi3", kind=Master):
     """A master from a state as :mod:`.monolithic` has it."""
-    oscillator, shaker = (find(model, form).path for model in (OSCILLATOR, MOTOR_SHAKER))
+    oscillator, shaker = (find_or_export(model, form).path for model in (OSCILLATOR, MOTOR_SHAKER))
     starts, shaker_starts = starts_of(system, state)
     with Instance(oscillator) as one, Instance(shaker) as other:
         one.initialize(**oscillator_start_values(system.structure), **starts)

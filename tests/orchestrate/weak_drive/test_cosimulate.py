@@ -10,7 +10,7 @@ from scipy.linalg import expm
 import orchestrate
 from orchestrate.errors import FmuError, InputError
 from orchestrate.fmu.description import describe
-from orchestrate.fmu.unit_names import unit_by_name
+from orchestrate.fmu.unit_names import parse_unit
 from orchestrate.weak_drive import cosimulate
 from orchestrate.weak_drive.connection import (
     FORCE,
@@ -270,7 +270,7 @@ def test_what_is_proposed_has_the_causality_and_a_name_like_ours(drive):
     names |= {"box_position": "table_pos", "box_force": "specimen_force"}
     assert propose_connections(describe(drive)) == names
     for name in (*MOTION, FORCE[0], *PUSHES):
-        assert unit_by_name(IN_WORDS[name]).exponents == UNITS[name]
+        assert parse_unit(IN_WORDS[name]).exponents == UNITS[name]
     assert [UNITS[name]["s"] for name in FORCE] == [-2, -3, -4, -5]
     assert Connection(
         {"force2": Link("push", 1.0), "box_force": Link("f", 1.0)}

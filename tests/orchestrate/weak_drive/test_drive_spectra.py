@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find
+from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find_or_export
 from orchestrate.response.spectra import amplitude_spectrum
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import make_couple_job
@@ -23,7 +23,10 @@ def whole_lines(speed):
     voltage, revolutions, points = voltage_between_jumps(*QUICK), 8, 2048
     ramp = Ramp(0.85 * voltage, voltage, RATE, settle=300.0, back=False)
     job = make_couple_job(*QUICK, ramp, Scheme(0.1))
-    with Instance(find(OSCILLATOR).path) as oscillator, Instance(find(MOTOR_SHAKER).path) as shaker:
+    with (
+        Instance(find_or_export(OSCILLATOR).path) as oscillator,
+        Instance(find_or_export(MOTOR_SHAKER).path) as shaker,
+    ):
         run = MotorRun(job, oscillator, shaker)
         run.run_steps_by_revolution(range(round((ramp.duration + HOLD) / 0.1)))
         state = state_of(run.master)

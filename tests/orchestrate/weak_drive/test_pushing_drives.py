@@ -6,7 +6,7 @@ from pythonfmu import FmuBuilder
 
 import orchestrate
 from orchestrate.errors import InputError
-from orchestrate.fmu import OSCILLATOR, Instance, find
+from orchestrate.fmu import OSCILLATOR, Instance, find_or_export
 
 from .drives import exciter
 
@@ -33,7 +33,7 @@ def test_the_motion_is_that_under_these_forces(drive, case):
     structure, connect, amplitude = CASES[case]
     pushes = {f"force{half}_amplitude": force for half, force in enumerate(FORCES, 1)}
     box = {"box_frequency": RATE, "box_amplitude": amplitude}
-    with Instance(find(OSCILLATOR).path) as instance:
+    with Instance(find_or_export(OSCILLATOR).path) as instance:
         instance.initialize(**structure.parameters(), **box, **pushes)
         instance.step(0.0, DURATION)
         exact = np.array(instance.get("x1", "x2"))

@@ -8,12 +8,12 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import NOT_NUMBERS, InputError
 from ..model import Excitation, Structure
 from .instance import Instance
-from .oscillator import START_PARAMETERS, respond_library, to_rest
+from .oscillator import START_PARAMETERS, relative_to_rest, respond_library
 
 REST = (0.0, 0.0, 0.0, 0.0)
 
 
-def begin(
+def start_motion(
     instance: Instance,
     structure: Structure,
     excitation: Excitation,
@@ -21,27 +21,28 @@ def begin(
     **values: float,
 ) -> None:
     """Reset an oscillator FMU; initialise it at time 0 by structure, excitation and start state."""
-    start_state = to_rest(structure, four_numbers(start))
+    start_state = relative_to_rest(structure, checked_four_numbers(start))
     state = dict(zip(START_PARAMETERS, start_state, strict=True))
     start_values = {**structure.parameters(), **state, **excitation.inputs(), "x_rel_max_on": False}
     instance.reset()
     instance.initialize(**{**start_values, **values})
     if instance.EVENTS:
-        enter = instance.cache.get("enterStepMode") or instance.prepared("fmi3EnterStepMode")
+        enter = instance.cache.get("enterStepMode") or instance.prepare_call("fmi3EnterStepMode")
         instance.cache["enterStepMode"] = enter
         enter()
 
 
-def gap_between(states: NDArray[np.float64], gap_offset: ArrayLike = 0.0) -> NDArray[np.float64]:
+def gaps_of_states(states: NDArray[np.float64], gap_offset: ArrayLike = 0.0) -> NDArray[np.float64]:
     """Return the gap x2 - x1 + offset of states (..., 4); rounding at an offset is 0."""
     rows, offsets = (np.ascontiguousarray(part, dtype=float) for part in (states, gap_offset))
     gaps = np.empty(rows.shape[:-1])
-    places = rows.ctypes.data, gaps.size, offsets.ctypes.data, offsets.size == 1
-    respond_library().find_gaps(*places, gaps.ctypes.data)
+    addresses = rows.ctypes.data, gaps.size, offsets.ctypes.data, offsets.size == 1
+    respond_library().find_gaps(*addresses, gaps.ctypes.data)
     return gaps
 
 
-def four_numbers(start: ArrayLike) -> list[float]:
+def checked_four_numbers(start: ArrayLike) -> list[float]:
+    """Return a start state as a list; raise unless it is four numbers."""
     try:
         state = np.asarray(start, dtype=float)
     except NOT_NUMBERS:
