@@ -131,29 +131,29 @@ class AttractorsJob(SeriesQuestion):
     def dataset(self, table: Table) -> xr.Dataset:
         along, shape = self.series.name, (len(self.series.values), self.starts)
         rows = table["features"].reshape(*shape, len(FEATURES))
-        there = table["how"][0] != ABSENT
+        exists = table["how"][0] != ABSENT
         text = "attractor that the start leads to"
         variables = {
-            "number": variable(along, there.sum(axis=1), "1", "attractors found"),
+            "number": variable(along, exists.sum(axis=1), "1", "attractors found"),
             **attractor_variables({name: table[name][0] for name in COLUMNS}, (along,), "starts"),
-            **self.existence_range_variables(there),
+            **self.existence_range_variables(exists),
             "attractor_of": variable((along, "start"), table["labels"][0], "1", text),
             "features": variable((along, "start", "feature"), rows, "1", SETTLED_TO),
         }
         coordinates = {
             **self.series.coordinates(),
             **si_state_coordinate(),
-            "attractor": variable("attractor", np.arange(there.shape[1]), "1", ATTRACTOR),
+            "attractor": variable("attractor", np.arange(exists.shape[1]), "1", ATTRACTOR),
             "start": variable("start", np.arange(self.starts), "1", "number of the start"),
             "feature": variable("feature", np.array(FEATURES), "1", "feature"),
         }
         title = f"Coexisting attractors along {along}: {self.structure.label()}"
         return make_dataset(variables, coordinates, title)
 
-    def existence_range_variables(self, there: NDArray[np.bool_]) -> dict[str, Variable]:
+    def existence_range_variables(self, exists: NDArray[np.bool_]) -> dict[str, Variable]:
         values = np.array(self.series.values)[:, np.newaxis]
-        first = np.where(there, values, np.inf).min(axis=0)
-        last = np.where(there, values, -np.inf).max(axis=0)
+        first = np.where(exists, values, np.inf).min(axis=0)
+        last = np.where(exists, values, -np.inf).max(axis=0)
         unit = self.series.coordinates()[self.series.name][2]["units"]
         text = f"{self.series.name} at which the attractor has been found"
         return {

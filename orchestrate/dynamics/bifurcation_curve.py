@@ -26,7 +26,7 @@ from .turning_points import (
     GAP,
     contact_pressure_and_derivatives,
     nearest_miss,
-    quantity_derivatives,
+    rate_curvature_and_value,
     turning_points,
     weakest_force,
 )
@@ -110,7 +110,7 @@ class BifurcationCurve:
         if self.kind == Kind.TOUCHING:
             which = np.array([self.node]), np.array([GAP])
             orbit = self.orbit(unknowns)
-            rate, _, gap = quantity_derivatives(orbit, *which, unknowns[-1:])
+            rate, _, gap = rate_curvature_and_value(orbit, *which, unknowns[-1:])
             return np.append(np.minimum(gap, orbit.form.limit - gap), rate)
         if self.kind == Kind.EARLIER_RELEASE:
             force, rate, _ = contact_pressure_and_derivatives(
@@ -179,7 +179,7 @@ class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
     def make_point(self, root: Root) -> Root:
         return root
 
-    def limited_unknowns(self) -> tuple[int, Sequence[tuple[float, float]]]:
+    def first_limited_unknown_and_limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
         curve = self.stepper.curve
         return curve.first_parameter_index, curve.family.setting.limits
 
@@ -188,7 +188,7 @@ class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
         self.stepper.curve.update_bordering_vectors(point.unknowns)
         return point
 
-    def end_within_step(self, step: BranchStep[Root]) -> tuple[str, Iterable[Root]]:
+    def end_reason_and_last_points(self, step: BranchStep[Root]) -> tuple[str, Iterable[Root]]:
         reason = self.stepper.curve.why_no_motion(step.after.unknowns)
         return reason, self.bisect_for_last_motion(step) if reason else ()
 

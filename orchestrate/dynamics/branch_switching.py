@@ -75,7 +75,7 @@ def without_grazing_impact(point: OrbitPoint) -> OrbitPoint:
     closing = np.where(orbit.sequence.releases, np.inf, orbit.nodes[:, CLOSING])
     node = int(np.abs(closing).argmin())
     nodes = np.delete(orbit.nodes, node, axis=0)
-    first = solve_with_sequence(point, orbit.sequence.without(node), nodes)
+    first = solve_with_sequence(point, orbit.sequence.without_node(node), nodes)
     ahead = ArclengthStepper(first.family, first.root, AWAY, AWAY).root_after(AWAY)
     return first if OrbitPoint(first.family, ahead).nearest_miss > 0.0 else first.reversed()
 

@@ -217,9 +217,11 @@ def branch(
         start, (over,), excitation_arguments(eta, frequency, amplitude), low_high, structure, pushes
     )
     if start is None:
-        start, value = find_first_orbit(structure, over, low_high, excitation, period, running)
+        start, value = find_first_orbit_and_value(
+            structure, over, low_high, excitation, period, running
+        )
     else:
-        value = start_value(start, over, switch, structure, pushes)
+        value = parameter_at_start(start, over, switch, structure, pushes)
     require_inside_limits(over, value, low_high)
     nodes, kind = start_guess_and_kind(start, "switch", switch)
     setting = varied_setting(structure, excitation, (over,), (low_high,))
@@ -321,7 +323,7 @@ def complete_excitation(
     return (*arguments, *pushes.items())
 
 
-def find_first_orbit(
+def find_first_orbit_and_value(
     structure: Structure,
     over: str,
     limits: tuple[float, float],
@@ -356,7 +358,7 @@ def require_inside_limits(over: str, value: float, limits: tuple[float, float]) 
         )
 
 
-def start_value(
+def parameter_at_start(
     start: xr.Dataset,
     over: str,
     switch: int | None,

@@ -126,13 +126,15 @@ class MotionDecider:
         )
         sampled = replace(response, samples=states, x_rel_max=gap)
         close, nearly = self.settings.converged, self.settings.apart * self.settings.converged
-        counts = [sampled.repetition(tolerance).multiplicity for tolerance in (close, nearly)]
+        counts = [sampled.find_repetition(tolerance).multiplicity for tolerance in (close, nearly)]
         return [n for n in dict.fromkeys(counts) if n]
 
     def motion_without_orbit(self, response: Response, near_unstable: bool) -> SettledMotion:
         """Return a new motion for a response without stable orbit; a periodic one is known now."""
         n = response.multiplicity
-        if not n or response.repetition(self.settings.converged).multiplicity != n:  # nearly is not
+        if (
+            not n or response.find_repetition(self.settings.converged).multiplicity != n
+        ):  # nearly is not
             states, impacts = response.samples, response.impacts_per_period
             return SettledMotion(self.point, IRREGULAR, states, 0, impacts, response.x_rel_max)
         states = response.samples[-n:].copy()
@@ -279,7 +281,11 @@ class MotionDecider:
         first = nearest(instance.read(*STATE))[0]
         impacts = len(instance.record_impacts(free_time, end).time)
         last, away = nearest(instance.read(*STATE))
-        return impacts == orbit.sequence.impacts and last == first and away < self.settings.returns
+        return (
+            impacts == orbit.sequence.impact_count
+            and last == first
+            and away < self.settings.returns
+        )
 
 
 def reduce_to_least_period(orbit: PeriodicOrbit) -> PeriodicOrbit:

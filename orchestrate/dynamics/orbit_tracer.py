@@ -148,7 +148,7 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     def make_point(self, root: Root) -> OrbitPoint:
         return OrbitPoint(self.stepper.curve, root)
 
-    def limited_unknowns(self) -> tuple[int, Sequence[tuple[float, float]]]:
+    def first_limited_unknown_and_limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
         family = self.stepper.curve
         return family.node_unknowns, family.setting.limits
 

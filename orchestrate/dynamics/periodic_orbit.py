@@ -53,7 +53,7 @@ class ImpactSequence:
         return np.where(self.sticks, np.where(self.outer, OUTER, INNER), FREE)
 
     @property
-    def impacts(self) -> int:
+    def impact_count(self) -> int:
         """Return the number of impacts, releases not counted."""
         return len(self.kinds) - int(self.releases.sum())
 
@@ -61,7 +61,7 @@ class ImpactSequence:
         """Return the sequence twice, over twice the periods."""
         return ImpactSequence(2 * self.periods, self.kinds * 2)
 
-    def without(self, node: int) -> ImpactSequence:
+    def without_node(self, node: int) -> ImpactSequence:
         return ImpactSequence(self.periods, self.kinds[:node] + self.kinds[node + 1 :])
 
     def with_impact(self, before: int, outer: bool = False) -> ImpactSequence:

@@ -47,7 +47,7 @@ class SettledMotion:
             decided=ORBIT,
             states=states,
             multiplicity=periods,
-            impacts_per_period=orbit.sequence.impacts / periods,
+            impacts_per_period=orbit.sequence.impact_count / periods,
             gap=Amplitudes.from_orbit(orbit, turning_points(orbit)).gap * point.displacement_unit,
             multiplier=float(np.abs(orbit.multipliers()).max(initial=0.0)),
             orbit=orbit,

@@ -75,7 +75,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         """Return the branch point of a solved root; subclasses define what a point is."""
 
     @abstractmethod
-    def limited_unknowns(self) -> tuple[int, Sequence[tuple[float, float]]]:
+    def first_limited_unknown_and_limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
         """Return the index of the first limited unknown, and (low, high) from it onwards."""
 
     def accepts(self, root: Root) -> bool:
@@ -93,12 +93,15 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
     def location_tolerances(self, length: float) -> dict[str, float]:
         return {"xtol": ACCURACY, "rtol": ACCURACY}
 
-    def end_within_step(self, step: BranchStep[Point]) -> tuple[str, Iterable[Point]]:
+    def end_reason_and_last_points(self, step: BranchStep[Point]) -> tuple[str, Iterable[Point]]:
         """Return why the branch ends within a step (empty if not), and its last points."""
         return "", ()
 
     def fit_impacts_to_step(self, step: BranchStep[Point]) -> tuple[Point, Kind | None]:
-        """Return the point that a step appends, and the bifurcation there if it ends the branch."""
+        """Return the point that a step appends, and the bifurcation there if it ends the branch.
+
+        The point may be before the step's end, where an orbit's impacts change.
+        """
         return step.after, None
 
     def set_end_without_root(self, segment: BranchSegment[Point]) -> None:
@@ -133,10 +136,12 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         """Take a step, shortened until all in it can be solved for; return its bifurcations too."""
         stepper = self.stepper
         while True:
-            root, length, at_limit = stepper.step_within(*self.limited_unknowns(), self.accepts)
+            root, length, at_limit = stepper.step_within(
+                *self.first_limited_unknown_and_limits(), self.accepts
+            )
             try:
                 step = BranchStep(self, before, self.make_point(root), length, at_limit, rates)
-                step.end, step.last_points = self.end_within_step(step)
+                step.end, step.last_points = self.end_reason_and_last_points(step)
                 if step.end:
                     return step, []
                 located = self.locate_bifurcations(step)
@@ -168,7 +173,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         crossings = [
             LocatedBifurcation(kind, *step.solve_for_level(kind, *bracket))
             for kind in kinds
-            for bracket in step.brackets(kind)
+            for bracket in step.sign_change_brackets(kind)
         ]
         parts = [each.position / step.length for each in crossings]
         pairs = zip(crossings, parts, strict=True)
@@ -235,7 +240,7 @@ class BranchStep(Generic[Point]):
         value = self.tracer.test_function(self.point(position), kind)
         return value if np.isfinite(value) else 1.0
 
-    def brackets(self, kind: Kind) -> list[tuple[float, float]]:
+    def sign_change_brackets(self, kind: Kind) -> list[tuple[float, float]]:
         """Return intervals of the step in which a kind's test function changes sign."""
         before, after = (
             self.tracer.test_function(point, kind) for point in (self.before, self.after)

@@ -56,10 +56,10 @@ def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
     phases = low + (high - low) * first / (first - last)
 
     def rate_and_slope(phase: Floats) -> tuple[Floats, Floats]:
-        return quantity_derivatives(orbit, segment, quantity, phase)[:2]
+        return rate_curvature_and_value(orbit, segment, quantity, phase)[:2]
 
     phases = refine_zeros(rate_and_slope, phases, (low, high), orbit.form.eta)
-    _, curvature, value = quantity_derivatives(orbit, segment, quantity, phases)
+    _, curvature, value = rate_curvature_and_value(orbit, segment, quantity, phases)
     return TurningPoints(segment, quantity, phases, value, curvature)
 
 
@@ -77,7 +77,7 @@ def refine_zeros(
     return phases
 
 
-def quantity_derivatives(
+def rate_curvature_and_value(
     orbit: PeriodicOrbit, segment: NDArray[np.int_], quantity: NDArray[np.int_], phase: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Return first and second tau derivatives, and values, of displacements or the gap."""

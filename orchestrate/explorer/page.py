@@ -18,7 +18,12 @@ from ..dynamics.settling import AttractorSettings
 from ..errors import InputError
 from ..files import make_writable_folder, write_atomically
 from ..fmu.channel import StepAnswer
-from ..fmu.webassembly import WebKernel, find_or_compile_web_kernel, loop_tables, numbers_in
+from ..fmu.webassembly import (
+    WebKernel,
+    find_or_compile_web_kernel,
+    nonzero_numbers,
+    tables_for_web_page,
+)
 from ..lazy import xr
 from ..model import Drive, Structure
 from ..model.ranges import EXCITATION, PUSHES, STRUCTURE
@@ -115,7 +120,7 @@ def render_page(
                 "shown": shown,
                 **drawn,
                 "variables": kernel.variables,
-                "loops": {**loop_tables(Pair, StepAnswer), "exponent": EXPONENT},
+                "loops": {**tables_for_web_page(Pair, StepAnswer), "exponent": EXPONENT},
                 "drive": drive_data(),
             },
             data=compress(chosen.numbers.astype("<f8").tobytes()),
@@ -194,7 +199,7 @@ def drive_data(step: float = 0.1) -> dict[str, Any]:
         instance = getattr(pair, side)
         instance.input_count, instance.output_count = len(known["inputs"]), len(known["outputs"])
     return {
-        "pair": numbers_in(pair),
+        "pair": nonzero_numbers(pair),
         "names": names,
         "columns": (*LEADING, *MOTOR.outputs, *MOTOR.inputs),
         "oscillator": {

@@ -23,7 +23,7 @@ module               idea
 from .c_library import build_libraries
 from .channel import Channel
 from .description import Description, describe
-from .events import NO_INPUT, PLAYED, EventInstance, Played, Player
+from .events import NO_INPUT, PLAYED, EventInstance, PlayedMotion, Player
 from .exported import (
     FORMS,
     MODELS,
@@ -66,7 +66,7 @@ __all__ = [
     "EventInstance",
     "Impacts",
     "Instance",
-    "Played",
+    "PlayedMotion",
     "Player",
     "start_motion",
     "build",

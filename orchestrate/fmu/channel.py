@@ -83,13 +83,13 @@ class Channel:
         """Clear the FMU's log messages before a new call, so that an error shows only its own."""
         self.instance._messages.clear()
 
-    def put(self, *values: float) -> None:
+    def set_inputs(self, *values: float) -> None:
         """Set the FMU's inputs in the order of the constructor; fewer values: the first ones."""
         count = len(values)
         self._inputs[:count] = values
         self._call(self._set, *self._puts[count])
 
-    def get(self) -> list[float]:
+    def get_outputs(self) -> list[float]:
         """Return the FMU's outputs in the order of the constructor; raise unless all are finite."""
         self._call(self._read, *self._gets)
         values: list[float] = self._outputs[:]

@@ -37,7 +37,7 @@ CUBICS = {  # inputs by the quantity that they make a cubic of
 PLAYED = ("x1", "x2", "v1", "v2", "x_rel", "v_rel", "contact_force")
 
 
-class Played(NamedTuple):
+class PlayedMotion(NamedTuple):
     """Result of an event loop: outputs and contact flags at the sampling times, and all impacts."""
 
     rows: Floats  # the outputs at each time
@@ -93,7 +93,7 @@ class EventLoop:
             *map(len, names[:3]),
         )
 
-    def run(self, nodes: Floats, derivatives: Floats, samples: Floats) -> Played:
+    def run(self, nodes: Floats, derivatives: Floats, samples: Floats) -> PlayedMotion:
         """Step from the first node to the last; set inputs at nodes, read outputs at samples."""
         arrays = [np.ascontiguousarray(part, float) for part in (nodes, derivatives, samples)]
         if arrays[1].shape != (len(nodes) - 1, len(self.inputs)):
@@ -112,7 +112,7 @@ class EventLoop:
             if answer == BROKEN:
                 raise self._failure(rows, progress)
             tables.append(self._buffer[: progress.impact].copy())
-        return Played(rows, touching, Impacts.from_table(np.concatenate(tables)))
+        return PlayedMotion(rows, touching, Impacts.from_table(np.concatenate(tables)))
 
     def _failure(self, rows: Floats, progress: PlayProgress) -> FmuError:
         fmi: Fmi = self._calls.fmi
@@ -167,7 +167,7 @@ class Player(EventInstance):
         samples: Floats,
         outputs: Sequence[str] = PLAYED,
         driven: Sequence[str] = (BOX,),
-    ) -> Played:
+    ) -> PlayedMotion:
         """Simulate under consecutive cubics of driven quantities; return samples and impacts."""
         inputs = (*(name for quantity in driven for name in CUBICS[quantity]),)
         return self.event_loop(inputs, tuple(outputs)).run(nodes, derivatives, samples)

@@ -76,13 +76,13 @@ def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
         return []
 
 
-def loop_tables(*more_structures: type[ctypes.Structure]) -> dict[str, Any]:
+def tables_for_web_page(*more_structures: type[ctypes.Structure]) -> dict[str, Any]:
     """Return what a page needs to call the loops, as JSON: structures, names, and their order."""
     structures: tuple[type[ctypes.Structure], ...] = (*STRUCTURES, *more_structures)
     arrays = load_model(MODELS[OSCILLATOR]).arrays
     booleans = [name for name, value in oscillator.START_VALUES.items() if isinstance(value, bool)]
     return {
-        "structures": {kind.__name__: layout(kind) for kind in structures},
+        "structures": {kind.__name__: c_layout(kind) for kind in structures},
         "pushes": PUSHES,
         "set": {name: float(value) for name, value in oscillator.START_VALUES.items()},
         "booleans": booleans,
@@ -96,7 +96,7 @@ def loop_tables(*more_structures: type[ctypes.Structure]) -> dict[str, Any]:
     }
 
 
-def layout(kind: type[ctypes.Structure]) -> dict[str, Any]:
+def c_layout(kind: type[ctypes.Structure]) -> dict[str, Any]:
     """Return size and fields of a C structure of 32 bits; inner ones as ``force.places.0``."""
     size, _, fields = place_members(kind)
     return {"size": size, "fields": fields}
@@ -126,10 +126,10 @@ def round_up(offset: int, alignment: int) -> int:
     return -(-offset // alignment) * alignment
 
 
-def numbers_in(structure: ctypes.Structure) -> dict[str, float]:
-    """Return the numbers of a C structure that are not 0, by the names of :func:`layout`."""
+def nonzero_numbers(structure: ctypes.Structure) -> dict[str, float]:
+    """Return the numbers of a C structure that are not 0, by the names of :func:`c_layout`."""
     numbers = {}
-    for path in layout(type(structure))["fields"]:
+    for path in c_layout(type(structure))["fields"]:
         value: Any = structure
         for name in path.split("."):
             value = value[int(name)] if name.isdigit() else getattr(value, name)

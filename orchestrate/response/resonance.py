@@ -61,16 +61,16 @@ class ResonanceJob(SweepJob):
         return [Point(structure, point.excitation) for structure in both for point in points]
 
     def dataset(self, table: Table) -> xr.Dataset:
-        ordered = {name: self.in_order(values) for name, values in table.items()}
+        ordered = {name: self.reorder_rows(values) for name, values in table.items()}
         title = f"Resonance curves: {self.structure.label()}"
         curves = make_dataset(self.variables(ordered), self.coordinates(), title)
         return curves.assign(self.peak_variables(curves) | self.jump_variables(curves))
 
-    def in_order(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
+    def reorder_rows(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
         """Reorder rows to (structure, direction, value), the values as they were given."""
         ordered = []
         for part in np.split(values, len(KINDS)):
-            rows = super().in_order(part)
+            rows = super().reorder_rows(part)
             ordered.append(rows if self.direction == "both" else rows[None])
         return np.array(ordered)
 

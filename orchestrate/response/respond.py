@@ -38,9 +38,9 @@ class Response:
         """Return the least number of periods after which states repeat, 0 if they do not."""
         if self.known_multiplicity is not None:
             return self.known_multiplicity
-        return self.repetition(self.tolerance).multiplicity
+        return self.find_repetition(self.tolerance).multiplicity
 
-    def repetition(self, tolerance: float) -> Repetition:
+    def find_repetition(self, tolerance: float) -> Repetition:
         return find_repetition(self.samples, self.frequency, self.x_rel_max, tolerance)
 
     def lacks_impacts(self, impacts: float, n: int) -> bool:
@@ -48,7 +48,7 @@ class Response:
         return bool(lacks_impacts(impacts, n, self.has_to_impact))
 
     @property
-    def gap(self) -> NDArray[np.float64]:
+    def gap_samples(self) -> NDArray[np.float64]:
         """Return the gap at the samples, m."""
         return gaps_of_states(self.samples, self.gap_offset)
 

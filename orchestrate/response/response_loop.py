@@ -82,7 +82,7 @@ class PointRows(NamedTuple):
     reals: Floats
     booleans: NDArray[np.bool_]
     periods: Floats
-    traits: Floats  # as :func:`..fmu.oscillator.traits` has them
+    traits: Floats  # as :func:`..fmu.oscillator.traits_for_loops` has them
 
 
 def response_loop(instance: Instance) -> ResponseLoop:
@@ -134,10 +134,10 @@ class ResponseLoop:
             tables = (table.ctypes.data for table in (states, gaps, lengths))
             state = value_references(self.oscillator.instance, STATE)
             task.known = pointer(KnownMotions(len(gaps), state, *tables, settings.same))
-        self.run(task)
+        self.run_task(task)
         return results
 
-    def run(self, task: ResponseTask) -> None:
+    def run_task(self, task: ResponseTask) -> None:
         """Call the compiled loop until the task is done; it writes into the task's arrays."""
         progress, answer = ResponseProgress(), PAUSED
         while answer == PAUSED:

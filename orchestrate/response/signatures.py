@@ -22,7 +22,7 @@ from .questions import Question, answer_question, checked_structure
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-class Changes(NamedTuple):
+class ChangedFields(NamedTuple):
     """What a public function makes of its arguments before they are its job's fields."""
 
     label: str  # end of the result's name
@@ -31,7 +31,7 @@ class Changes(NamedTuple):
 
 def as_given(label: str = "", /, **changed: Any) -> Any:
     """Answer by the arguments as given, but for those changed; ``label`` ends the result's name."""
-    return Changes(label, changed)
+    return ChangedFields(label, changed)
 
 
 def question(kind: type[Question]) -> Callable[[Function], Function]:
@@ -47,7 +47,7 @@ def question(kind: type[Question]) -> Callable[[Function], Function]:
             if "running" in known:  # else others are taken too
                 refuse_unknown_keywords(keywords, known)
             changes = function(*positional, **keywords)
-            if not isinstance(changes, Changes):
+            if not isinstance(changes, ChangedFields):
                 return changes
             call = signature.bind(*positional, **keywords)
             call.apply_defaults()

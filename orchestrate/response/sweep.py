@@ -111,7 +111,7 @@ class SweepJob(StartedSeriesQuestion):
     def table_row(self, decided: DecidedResponse) -> dict[str, Any]:
         response, decision, impacts = decided
         return {
-            "gap": response.gap,
+            "gap": response.gap_samples,
             "gap_offset": response.gap_offset,
             "x_rel_max": response.x_rel_max,
             "impacts_per_period": impacts,
@@ -124,14 +124,14 @@ class SweepJob(StartedSeriesQuestion):
         return bytes(table["end"][-1].tobytes())
 
     def dataset(self, table: Table) -> xr.Dataset:
-        in_order = {"gap": self.gaps_in_order}
+        reorder = {"gap": self.reorder_gaps}
         del table["gap_offset"]  # what a next chunk needed
         # each column leaves the table: of a long sweep there is no room for two
-        ordered = {name: in_order.get(name, self.in_order)(table.pop(name)) for name in [*table]}
+        ordered = {name: reorder.get(name, self.reorder_rows)(table.pop(name)) for name in [*table]}
         title = f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
         return labels.make_dataset(self.variables(ordered), self.coordinates(), title)
 
-    def in_order(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
+    def reorder_rows(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
         """Reorder rows from computing order to the values' order, (direction, value) if both."""
         orders = self.computing_orders()
         rows = values.reshape(len(orders), -1, *values.shape[1:])
@@ -140,12 +140,12 @@ class SweepJob(StartedSeriesQuestion):
             ordered[index, order] = rows[index]
         return ordered if self.direction == "both" else ordered[0]
 
-    def gaps_in_order(self, gaps: NDArray[np.float64] | StoredRows) -> Any:
+    def reorder_gaps(self, gaps: NDArray[np.float64] | StoredRows) -> Any:
         """Return the samples of the gap over a eta^2 in the values' order, lazily if stored."""
         length = self.series.displacement_and_velocity_units[:, :1]
         if isinstance(gaps, np.ndarray):
-            return np.asarray(self.in_order(gaps), dtype=float) / length
-        numbers = self.in_order(np.arange(gaps.shape[0], dtype=np.intp))
+            return np.asarray(self.reorder_rows(gaps), dtype=float) / length
+        numbers = self.reorder_rows(np.arange(gaps.shape[0], dtype=np.intp))
         source = numbers.ravel().view(np.intp)
 
         def read(rows: NDArray[np.intp]) -> NDArray[np.float64]:

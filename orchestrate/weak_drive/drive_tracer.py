@@ -160,7 +160,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
     def make_point(self, root: continuation.Root) -> Motion:
         return observe_motion(self.shooter, root, self.stepper.root.tangent)
 
-    def limited_unknowns(self) -> tuple[int, Sequence[tuple[float, float]]]:
+    def first_limited_unknown_and_limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
         return self.shooter.size + 1, [self.speeds]
 
     def move_stepper_to(self, point: Motion) -> Motion:
@@ -190,7 +190,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
     def location_tolerances(self, length: float) -> dict[str, float]:
         return {"xtol": 1e-6 * length}
 
-    def end_within_step(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
+    def end_reason_and_last_points(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
         # beyond, the same motions come again, half a period later
         change = state_change_over_half_period(self.shooter, step.after.root)
         return (HALVED if self.half_change @ change < 0.0 else ""), ()

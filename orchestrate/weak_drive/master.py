@@ -153,11 +153,11 @@ class DriveSide:
         return self.forces, self.motions, self.pushes
 
     def set_inputs(self, force: Sequence[float], inputs: Sequence[float]) -> None:
-        self.channel.put(*(force[i] / link.scale for i, link in self.forces), *inputs)
+        self.channel.set_inputs(*(force[i] / link.scale for i, link in self.forces), *inputs)
 
     def read_outputs(self) -> list[float]:
         """Return the box's motion, NaN for what is not connected, forces, and other outputs."""
-        values = self.channel.get()
+        values = self.channel.get_outputs()
         box = [math.nan] * len(BOX)
         for (i, link), value in zip(self.motions, values, strict=False):
             box[i] = link.scale * value
@@ -193,7 +193,7 @@ class Master:
     def reset(self) -> None:
         """Begin anew at the state that both instances are in."""
         unknown = [math.nan] * len(self.connection.inputs)
-        step, motion = [0.0] * (MOTION - TIME), self.oscillator.get()
+        step, motion = [0.0] * (MOTION - TIME), self.oscillator.get_outputs()
         # its acceleration follows the force
         self.drive.set_inputs((motion[FORCE_PLACE], 0.0, 0.0, 0.0), ())
         then = [0.0] * (4 * len(self.connection.connected_pushes))
@@ -309,7 +309,7 @@ class Master:
                 channel.instance.check_status("the step", WARNING)
                 side.warned = 0
             if side.status == NOT_FINITE:
-                channel.get()  # it raises
+                channel.get_outputs()  # it raises
             if side.status in (0, NOT_WHOLE) or side.failed == b"the step":
                 with suppress(SimulationEnded):
                     channel.check_step(max(side.status, 0), side.status != NOT_WHOLE)

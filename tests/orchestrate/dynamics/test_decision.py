@@ -253,7 +253,7 @@ def test_an_orbit_is_one_to_which_the_fmu_returns(monkeypatch, away, impacts, pe
         record_impacts=lambda begin, end: found, read=lambda *names: None
     )
     motion, ends = decider.motion(), iter([(0, 1.0), (period, away)])
-    motion.orbit = SimpleNamespace(sequence=SimpleNamespace(impacts=1))
+    motion.orbit = SimpleNamespace(sequence=SimpleNamespace(impact_count=1))
     motion.states, motion.nearest_state_at_free_phase = [REST], lambda state: next(ends)
     assert decider.repeats_in_fmu(motion) == repeats
 

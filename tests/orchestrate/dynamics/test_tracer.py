@@ -31,7 +31,7 @@ class CircleTracer(BranchTracer):
     def make_point(self, root):
         return root
 
-    def limited_unknowns(self):
+    def first_limited_unknown_and_limits(self):
         return 0, [(-2.0, 2.0)]
 
     def test_function(self, point, kind):
@@ -49,7 +49,7 @@ def test_a_step_is_shortened_where_a_bifurcation_cannot_be_located():
 
     def fail_in_long_steps(step):
         lengths.append(step.length)
-        if step.length > 0.01 and step.brackets(Kind.FOLD):
+        if step.length > 0.01 and step.sign_change_brackets(Kind.FOLD):
             raise NoConvergenceError("too long")
         return located(step)
 

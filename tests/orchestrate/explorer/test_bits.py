@@ -4,7 +4,7 @@ import struct
 
 import pytest
 
-from orchestrate.fmu.webassembly import find_or_compile_web_kernel, layout
+from orchestrate.fmu.webassembly import c_layout, find_or_compile_web_kernel
 from orchestrate.weak_drive.master import DRIVE, MOTION, Pair
 from tests.web_instance import WebInstance
 
@@ -72,7 +72,7 @@ def test_structures_lie_in_the_module_as_the_page_has_them(kernel):
     """C compiled for 32 bits says itself how large the coupling loop's structure is."""
     web = WebInstance(kernel)
     place = web.exports["sizes_of_couple"].value(web.store)
-    assert web.read(place, "u4", 3).tolist() == [layout(Pair)["size"], MOTION, DRIVE]
-    fields = layout(Pair)["fields"]
+    assert web.read(place, "u4", 3).tolist() == [c_layout(Pair)["size"], MOTION, DRIVE]
+    fields = c_layout(Pair)["fields"]
     assert fields["force.places.3"][1] == fields["force.places.0"][1] + 12
     assert fields["force.scales.0"] == ("f64", fields["force.count"][1] + 24)
