@@ -77,7 +77,7 @@ COIL = Reference(
 REFERENCES = (OSCILLATOR, MOTOR_SHAKER, COIL)
 
 
-def rows_of_run(
+def simulate_rows(
     fmu: str | PathLike[str],
     times: Sequence[float],
     outputs: Sequence[str],
@@ -95,11 +95,11 @@ def rows_of_run(
     return rows
 
 
-def reference_rows(reference: Reference, fmu: str | PathLike[str]) -> list[list[float]]:
+def simulate_reference_rows(reference: Reference, fmu: str | PathLike[str]) -> list[list[float]]:
     def inputs(time: float) -> dict[str, float]:
         return dict(zip(reference.inputs, reference.input_at(time), strict=True))
 
-    return rows_of_run(fmu, reference.times(), reference.outputs, inputs)
+    return simulate_rows(fmu, reference.times(), reference.outputs, inputs)
 
 
 def write_reference(reference: Reference, rows: Sequence[Sequence[float]]) -> None:

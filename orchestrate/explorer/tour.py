@@ -49,12 +49,13 @@ class View:
 
     @property
     def link_text(self) -> str:
+        """Return the part of the page's address that shows this motion."""
         low, high = self.region
         start = ",".join(f"{value:g}" for value in self.start)
         level = {"g": self.level} if self.level else {}
         words = {"from": low, "to": high, "direction": self.direction, **self.changes, **level}
-        said = [f"{name}={value}" for name, value in words.items()]
-        return "&".join([*said, f"eta={self.eta}", f"start={start}"])
+        parts = [f"{name}={value}" for name, value in words.items()]
+        return "&".join([*parts, f"eta={self.eta}", f"start={start}"])
 
     @property
     def structure(self) -> Structure:
@@ -123,11 +124,13 @@ STEPS = (
 )
 
 
-def in_units(text: str, shown: Mapping[str, str]) -> str:
+def convert_quantities(text: str, units: Mapping[str, str]) -> str:
+    """Return a text in which numbers in braces, with their units, are in other units."""
+
     def convert(match: re.Match[str]) -> str:
         number, unit = match.groups()
         sizes = FACTORS[KINDS[unit]]
-        word = shown[KINDS[unit]]
+        word = units[KINDS[unit]]
         scale = sizes[unit] / (OMEGA if word == "eta" else sizes[word])
         value = format(Decimal(f"{float(number) * scale:.4g}"), "f")  # without an exponent
         return f"η = {value}" if word == "eta" else f"{value} {SPELLED.get(word, word)}"
@@ -135,15 +138,17 @@ def in_units(text: str, shown: Mapping[str, str]) -> str:
     return QUANTITY.sub(convert, text)
 
 
-def tour_in(shown: Mapping[str, str]) -> tuple[Step, ...]:
+def tour_in_units(units: Mapping[str, str]) -> tuple[Step, ...]:
     return tuple(
         replace(
             step,
-            text=in_units(step.text, shown),
-            stops=tuple(replace(stop, label=in_units(stop.label, shown)) for stop in step.stops),
+            text=convert_quantities(step.text, units),
+            stops=tuple(
+                replace(stop, label=convert_quantities(stop.label, units)) for stop in step.stops
+            ),
         )
         for step in STEPS
     )
 
 
-TOUR = tour_in(USUAL)
+TOUR = tour_in_units(USUAL)
