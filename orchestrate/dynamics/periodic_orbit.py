@@ -58,7 +58,6 @@ class ImpactSequence:
         return len(self.kinds) - int(self.releases.sum())
 
     def doubled(self) -> ImpactSequence:
-        """Return the sequence twice, over twice the periods."""
         return ImpactSequence(2 * self.periods, self.kinds * 2)
 
     def without_node(self, node: int) -> ImpactSequence:

@@ -205,7 +205,6 @@ class Instance:
         return self.description.variable(name)
 
     def set(self, **values: float) -> None:
-        """Set variables by name, one FMI call for each type."""
         names = ("Set", *values)
         new_values = list(values.values())
         for call, array, positions in self._transfers.get(names) or self._prepare_transfers(names):
@@ -218,7 +217,6 @@ class Instance:
             call()
 
     def get(self, *names: str) -> list[Any]:
-        """Return the values of variables in the order of their names."""
         key = ("Get", *names)
         values: list[Any] = [None] * len(names)
         for call, array, positions in self._transfers.get(key) or self._prepare_transfers(key):
@@ -291,7 +289,6 @@ class Instance:
         self._reset()
 
     def step(self, time: float, target: float) -> None:
-        """Step from the present time to another one."""
         self._time.value, self._length.value = time, target - time
         self._step()
 

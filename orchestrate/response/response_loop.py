@@ -70,7 +70,6 @@ class Responses(NamedTuple):
     must_impact: NDArray[np.bool_]  # whether no motion without impacts exists
 
     def select(self, indices: NDArray[np.intp]) -> Responses:
-        """Return the results of some of the responses."""
         counts = {name: numbers[indices] for name, numbers in self.counts.items()}
         parts = (counts if isinstance(part, dict) else part[indices] for part in self)
         return Responses._make(parts)
