@@ -26,8 +26,8 @@ from .references import (
     MOTOR_SHAKER,
     REFERENCES,
     Reference,
-    simulate_reference_rows,
-    simulate_rows,
+    reference_rows,
+    rows_of_run,
     write_reference,
 )
 
@@ -55,7 +55,6 @@ def variable_table(path: str | PathLike[str]) -> str:
 
 
 def replace_table(page: str, reference: Reference, table: str) -> str:
-    """Return the text of a page with another table of a model's variables."""
     source, end = f"fmu_src/models/{reference.folder}/variables.py", "<!-- end of variables -->"
     begin = f"<!-- variables: generated from {source}, kept so by a test -->"
     head, rest = page.split(begin + "\n")
@@ -64,31 +63,28 @@ def replace_table(page: str, reference: Reference, table: str) -> str:
 
 
 def simulate_example(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Run the oscillator; return times and outputs over two settled periods with chattering."""
     names, eta = ("x1", "x2", "x_rel", "in_contact"), 0.4
     period = 2.0 * math.pi / eta
     times = [0.0, *(500 * period + np.linspace(0.0, 2 * period, 600))]
     box = {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
-    return times_and_columns(simulate_rows(fmu, times, names, lambda _: {}, **box), names)
+    return columns_of(rows_of_run(fmu, times, names, lambda _: {}, **box), names)
 
 
 def simulate_limits(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Run the shaker into its limits; return times and outputs."""
     names = ("voltage", "current", "box_position", "limited")
     coil = {"coil_inductance": 0.02, "voltage_limit": 5.0, "current_limit": 1.0}
     times = np.linspace(0.0, 1.5, 801).tolist()
-    return times_and_columns(simulate_rows(fmu, times, names, growing_sine_inputs, **coil), names)
+    return columns_of(rows_of_run(fmu, times, names, growing_sine, **coil), names)
 
 
-def times_and_columns(
+def columns_of(
     rows: Sequence[Sequence[float]], names: Sequence[str]
 ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Return the times of all rows but the first, and the other columns by their names."""
     times, *values = np.array(rows, dtype=float)[1:].T
     return times, dict(zip(names, values, strict=True))
 
 
-def growing_sine_inputs(time: float, frequency: float = 40.0) -> dict[str, float]:
+def growing_sine(time: float, frequency: float = 40.0) -> dict[str, float]:
     """Return command and derivatives of ``12 t sin(frequency t)``, V."""
     turn, wave = 12.0 * np.exp(1j * frequency * time), 1j * frequency
     values = [((time * wave**n + n * wave ** max(n - 1, 0)) * turn).imag for n in range(4)]
@@ -121,7 +117,7 @@ def main() -> None:
     names = "fmi3", "fmi2-python"
     forms = [[find_or_export(each.model, name).path for name in names] for each in REFERENCES]
     for reference, (fmu, with_tabulated_fields) in zip(REFERENCES, forms, strict=True):
-        rows = simulate_reference_rows(reference, fmu)
+        rows = reference_rows(reference, fmu)
         write_reference(reference, rows)
         draw_documentation(reference, fmu, rows)
         table = variable_table(with_tabulated_fields)

@@ -77,7 +77,7 @@ COIL = Reference(
 REFERENCES = (OSCILLATOR, MOTOR_SHAKER, COIL)
 
 
-def simulate_rows(
+def rows_of_run(
     fmu: str | PathLike[str],
     times: Sequence[float],
     outputs: Sequence[str],
@@ -95,11 +95,11 @@ def simulate_rows(
     return rows
 
 
-def simulate_reference_rows(reference: Reference, fmu: str | PathLike[str]) -> list[list[float]]:
+def reference_rows(reference: Reference, fmu: str | PathLike[str]) -> list[list[float]]:
     def inputs(time: float) -> dict[str, float]:
         return dict(zip(reference.inputs, reference.input_at(time), strict=True))
 
-    return simulate_rows(fmu, reference.times(), reference.outputs, inputs)
+    return rows_of_run(fmu, reference.times(), reference.outputs, inputs)
 
 
 def write_reference(reference: Reference, rows: Sequence[Sequence[float]]) -> None:

@@ -15,16 +15,15 @@ from ..running.provenance import describe_dataset
 from .sweep_data import READING
 
 
-def branches_for_page(branch: xr.Dataset | None) -> dict[str, Any]:
-    """Return a branch's lines and bifurcations as the page reads them; raise if it has none."""
-    if branch is None:
+def branch_json(found: xr.Dataset | None) -> dict[str, Any]:
+    if found is None:
         return {"branches": [], "bifurcations": []}
-    if branch.attrs.get("over") != "eta":
-        over = f" over {branch.attrs['over']}" if "over" in branch.attrs else ""
-        text = f"{describe_dataset(branch)}{over}; expected a result of orchestrate.branch over eta"
+    if found.attrs.get("over") != "eta":
+        over = f" over {found.attrs['over']}" if "over" in found.attrs else ""
+        text = f"{describe_dataset(found)}{over}; expected a result of orchestrate.branch over eta"
         raise InputError(f"branches: {text}")
     try:
-        drawn = {"branches": branch_lines(branch), "bifurcations": bifurcation_points(branch)}
+        drawn = {"branches": branch_lines(found), "bifurcations": bifurcation_points(found)}
         json.dumps(drawn, allow_nan=False)  # as the page reads it
         return drawn
     except READING as error:
@@ -34,14 +33,13 @@ def branches_for_page(branch: xr.Dataset | None) -> dict[str, Any]:
         ) from None
 
 
-def branch_lines(branch: xr.Dataset) -> list[dict[str, Any]]:
-    """Return the gap at phase 0 over eta as lines, each stable or unstable: one a period's part."""
-    stable = branch.stable.values == 1
+def branch_lines(found: xr.Dataset) -> list[dict[str, Any]]:
+    stable = found.stable.values == 1
     return [
         {"x": along.tolist(), "y": gaps.tolist(), "stable": bool(flag)}
-        for samples in branch.xi_rel.transpose("sample", "point").values
+        for samples in found.xi_rel.transpose("sample", "point").values
         for along, gaps, flag in split_by_stability(
-            branch["eta"].values.astype(float), samples, stable
+            found["eta"].values.astype(float), samples, stable
         )
     ]
 
@@ -60,18 +58,17 @@ def split_by_stability(
     ]
 
 
-def bifurcation_points(branch: xr.Dataset) -> list[dict[str, Any]]:
-    """Return eta, largest gap at phase 0 and kind of each bifurcation with an open gap."""
-    if not branch.sizes.get("bifurcation"):
+def bifurcation_points(found: xr.Dataset) -> list[dict[str, Any]]:
+    if not found.sizes.get("bifurcation"):
         return []
-    kinds = branch.bifurcation_kind
+    kinds = found.bifurcation_kind
     names = flag_words(kinds.attrs)
     return [
         {"eta": float(value), "gap": float(np.max(gaps)), "kind": names[int(kind)]}
         for value, kind, gaps in zip(
-            branch.bifurcation_value.values,
+            found.bifurcation_value.values,
             kinds.values,
-            branch.bifurcation_xi_rel.values,
+            found.bifurcation_xi_rel.values,
             strict=True,
         )
         if np.max(gaps) > 0.0

@@ -15,14 +15,12 @@ EXPORT = re.compile(r"^export ((?:async )?(?:function\*?|class|const|let)) (\w+)
 
 
 def bundle(sources: Mapping[str, str], entry: str) -> str:
-    """Return one script of a module and all that it imports."""
     order: list[str] = []
     append_with_imports(sources, entry, order)
     return '"use strict";\n' + "".join(wrap_module(name, sources[name]) for name in order)
 
 
 def append_with_imports(sources: Mapping[str, str], name: str, order: list[str]) -> None:
-    """Append a module's name to an order of modules, behind those that it imports."""
     if name in order:
         return
     for match in IMPORT.finditer(sources[name]):
@@ -31,19 +29,18 @@ def append_with_imports(sources: Mapping[str, str], name: str, order: list[str])
 
 
 def wrap_module(name: str, source: str) -> str:
-    """Return a module as a constant: the result of a function that returns what it exports."""
     exported = ", ".join(match[2] for match in EXPORT.finditer(source))
-    body = IMPORT.sub(import_as_constants, source)
-    body = EXPORT.sub(r"\1 \2", remove_block_comments(body)).strip()
+    body = IMPORT.sub(rewrite_import, source)
+    body = EXPORT.sub(r"\1 \2", remove_comments(body)).strip()
     return f"const module_{name} = (() => {{\n{body}\nreturn {{ {exported} }};\n}})();\n"
 
 
-def import_as_constants(match: re.Match[str]) -> str:
+def rewrite_import(match: re.Match[str]) -> str:
     """Return an import statement rewritten as constants from the other module's function."""
     names = " ".join(match[1].split()).rstrip(",")
     return f"const {{ {names} }} = module_{match[2]};\n"
 
 
-def remove_block_comments(source: str) -> str:
+def remove_comments(source: str) -> str:
     """Return a source without block comments that fill whole lines."""
     return re.sub(r"^[ \t]*/\*\*(?:(?!\*/).)*\*/[ \t]*\n", "", source, flags=re.M | re.S)

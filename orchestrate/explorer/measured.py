@@ -18,7 +18,7 @@ SWEPT = 0.01  # over the mean frequency: a sine whose frequency changes by more 
 MOST = 4000  # points of a line
 
 
-def record_for_page(record: xr.Dataset | None) -> dict[str, Any]:
+def record_json(record: xr.Dataset | None) -> dict[str, Any]:
     """Return what the page draws of half 1 over the model's spectrum.
 
     - The box moves as a sine whose frequency changes by more than ``SWEPT``: orders 1 to 5 as
@@ -28,12 +28,12 @@ def record_for_page(record: xr.Dataset | None) -> dict[str, Any]:
     if record is None:
         return {"record": None}
     channels = Channels.from_record(record, (BOX, FACE))
-    orders = orders_of_swept_sine(record)
+    orders = swept_orders(record)
     drawn = {"orders": orders} if orders else {"lines": spectral_lines(channels)}
     return {"record": {"title": channels.title, **drawn}}
 
 
-def orders_of_swept_sine(record: xr.Dataset) -> dict[str, Any] | None:
+def swept_orders(record: xr.Dataset) -> dict[str, Any] | None:
     """Return the frequencies of a swept sine, Hz, and a row of amplitudes for each order; None if
     the record is of another kind.
     """

@@ -33,11 +33,11 @@ from ..weak_drive.connection import FORCE, MOTOR
 from ..weak_drive.master import CUBIC, Links, Pair, Scheme
 from ..weak_drive.run import oscillator_start_values
 from ..weak_drive.step_record import BOX, LEADING, OscillatorOutputs
-from .branches import branches_for_page
+from .branches import branch_json
 from .bundle import bundle
-from .measured import record_for_page
-from .sweep_data import SweepData, first_diagram, read_sweep, require_showable_units, units_on_page
-from .tour import TOUR, tour_in_units
+from .measured import record_json
+from .sweep_data import SweepData, check_units, first_diagram, read_sweep, shown_in
+from .tour import TOUR, tour_in
 from .words import WORDS
 
 SOURCES = Path(__file__).parent / "page"
@@ -65,10 +65,10 @@ def explore(
     """
     asked = units if isinstance(units, Units) else Units.from_text(units)
     if data is None or isinstance(data, Structure):
-        sweep = first_diagram(data or Structure(), asked)
+        chosen = first_diagram(data or Structure(), asked)
     else:
-        sweep = read_sweep(data)
-        require_showable_units(asked, sweep.level)
+        chosen = read_sweep(data)
+        check_units(asked, chosen.level)
         asked = asked.with_defaults(display_units_of(data))
     path = Path(output)
     if path.is_dir():
@@ -81,9 +81,9 @@ def explore(
     make_writable_folder(path.parent)
     kernel, drawn = (
         find_or_compile_web_kernel(build_folder),
-        branches_for_page(branches) | record_for_page(record),
+        branch_json(branches) | record_json(record),
     )
-    text = render_page(sweep, units_on_page(asked, sweep.level), drawn, kernel)
+    text = render_page(chosen, shown_in(asked, chosen.level), drawn, kernel)
     return write_atomically(path, lambda place: place.write_text(text, encoding="utf-8"))
 
 
@@ -96,7 +96,7 @@ def first_bytes(path: Path) -> bytes:
 
 
 def render_page(
-    sweep: SweepData, shown: dict[str, str], drawn: dict[str, Any], kernel: WebKernel
+    chosen: SweepData, shown: dict[str, str], drawn: dict[str, Any], kernel: WebKernel
 ) -> str:
     scripts = read_modules()
     made_by = f"vibroimpact {__version__}, kernel {kernel.guid}"
@@ -109,22 +109,22 @@ def render_page(
             style=Markup(style),  # own sources, in elements whose content HTML takes as it stands
             script=Markup(script),
             worker=Markup(bundle(scripts, "worker")),
-            tour=tour_in_units(shown),
+            tour=tour_in(shown),
             words=WORDS,
             branches=drawn["branches"],
             record=drawn["record"],
             source=made_by,
-            swept=f"sweep by {sweep.source}" if sweep.source else "",
+            swept=f"sweep by {chosen.source}" if chosen.source else "",
             table={
-                **page_data(sweep),
+                **page_data(chosen),
                 "shown": shown,
                 **drawn,
                 "variables": kernel.variables,
                 "loops": {**tables_for_web_page(Pair, StepAnswer), "exponent": EXPONENT},
                 "drive": drive_data(),
             },
-            data=compress_to_base64(sweep.numbers.astype("<f8").tobytes()),
-            kernel=compress_to_base64(kernel.module),
+            data=compress(chosen.numbers.astype("<f8").tobytes()),
+            kernel=compress(kernel.module),
             **voltage_slider(),
         )
     )
@@ -155,14 +155,12 @@ def content_security_policy(style: str, script: str) -> str:
 
 
 def policy_digest(content: str) -> str:
-    """Return the digest by which the policy allows a script or style."""
     return f"sha256-{base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()}"
 
 
-def page_data(sweep: SweepData) -> dict[str, Any]:
-    """Return what the page knows of a sweep and its structure but the numbers of each response."""
+def page_data(chosen: SweepData) -> dict[str, Any]:
     return {
-        "structure": structure_numbers(sweep.structure) | sweep.pushes,
+        "structure": structure_numbers(chosen.structure) | chosen.pushes,
         "usual": structure_numbers(Structure()),
         "ranges": {name: [q.minimum, q.maximum] for name, q in PAGES.items()} | FLAGS,
         "units": {
@@ -171,12 +169,12 @@ def page_data(sweep: SweepData) -> dict[str, Any]:
             if quantity.unit != "1"
         },
         "alike": AttractorSettings().alike,
-        "settings": sweep.settings,
-        "directions": sweep.directions,
-        "count": sweep.count,
-        "low": sweep.low,
-        "high": sweep.high,
-        "level": sweep.level,
+        "settings": chosen.settings,
+        "directions": chosen.directions,
+        "count": chosen.count,
+        "low": chosen.low,
+        "high": chosen.high,
+        "level": chosen.level,
         "tour": {stop.name: stop.link_text for step in TOUR for stop in step.stops},
     }
 
@@ -214,19 +212,17 @@ def drive_data(step: float = 0.1) -> dict[str, Any]:
 
 
 def voltage_slider(low: float = 0.8, high: float = 2.0, first: float = 0.9) -> dict[str, str]:
-    """Return ends and first value of the page's slider, V, of multiples of K omega."""
     unit = Drive.from_file("quick").motor_constant * Structure.from_file("quick").omega
     ends = {"voltage_low": low, "voltage_high": high, "voltage": first}
     return {name: f"{value * unit:.6g}" for name, value in ends.items()}
 
 
 def structure_numbers(structure: Structure) -> dict[str, float]:
-    """Return a structure's parameters, and loads other than the box's motion, which are 0."""
     numbers = {name: float(value) for name, value in structure.parameters().items()}
     return numbers | dict.fromkeys(PUSHES, 0.0)
 
 
-def compress_to_base64(content: bytes) -> str:
+def compress(content: bytes) -> str:
     return base64.b64encode(zlib.compress(content, 9)).decode()
 
 

@@ -56,14 +56,13 @@ class SweepData:
 def empty_sweep(structure: Structure, units: Units) -> SweepData:
     """Return data without a sweep: the page then computes its first diagram itself."""
     settings = {"transient": 500, "samples": 200, "tolerance": 1e-2}
-    level = ("paper", 1.0) if opens_in_ratios(structure, units) else ("g", 1.0)
+    level = ("paper", 1.0) if in_ratios(structure, units) else ("g", 1.0)
     return SweepData(structure, ("up",), settings, np.empty(0), 0, 0.1, 8.0, level, "")
 
 
 def read_sweep(data: xr.Dataset) -> SweepData:
-    """Read a result of ``sweep``; raise an ``InputError`` whatever is wrong with it."""
     try:
-        return read_checked_sweep(data, checked_sweep_direction(data))
+        return read_checked(data, check_sweep(data))
     except InputError:
         raise
     except READING as error:
@@ -72,7 +71,7 @@ def read_sweep(data: xr.Dataset) -> SweepData:
         ) from None
 
 
-def read_checked_sweep(data: xr.Dataset, direction: str) -> SweepData:
+def read_checked(data: xr.Dataset, direction: str) -> SweepData:
     structure = Structure.from_attributes({str(name): value for name, value in data.attrs.items()})
     pushes = {name: data.attrs.get(name, 0.0) for name in PUSHES}
     varied = {name: text for name, text in pushes.items() if isinstance(text, str)}
@@ -97,7 +96,7 @@ def read_checked_sweep(data: xr.Dataset, direction: str) -> SweepData:
     return SweepData(
         structure=structure,
         directions=directions,
-        settings=checked_sweep_settings(data),
+        settings=sweep_settings(data),
         numbers=numbers,
         count=data.sizes[parameter],
         low=float(data.eta.min()),
@@ -108,14 +107,14 @@ def read_checked_sweep(data: xr.Dataset, direction: str) -> SweepData:
     )
 
 
-def opens_in_ratios(structure: Structure, units: Units) -> bool:
+def in_ratios(structure: Structure, units: Units) -> bool:
     """Return whether a page opens with the paper's ratios: no other unit is asked for."""
     if units.length or units.acceleration:
         return False
     return units.frequency == "eta" if units.frequency else is_nondimensional(structure)
 
 
-def require_showable_units(units: Units, level: tuple[str, float]) -> None:
+def check_units(units: Units, level: tuple[str, float]) -> None:
     """Check that a sweep can be shown in some units: one of the paper's motion is in ratios."""
     if level[0] == "paper" and (units.length or units.acceleration or units.frequency not in RATIO):
         raise InputError(
@@ -124,8 +123,7 @@ def require_showable_units(units: Units, level: tuple[str, float]) -> None:
         )
 
 
-def units_on_page(units: Units, level: tuple[str, float]) -> dict[str, str]:
-    """Return the unit of each kind of quantity on the page; defaults are those of a user's beam."""
+def shown_in(units: Units, level: tuple[str, float]) -> dict[str, str]:
     if level[0] == "paper":  # ratios have no unit, but of time
         units = Units(time=units.time)
     return asdict(units.with_defaults(OWN))
@@ -146,7 +144,7 @@ def excitation_level(data: xr.Dataset, structure: Structure) -> tuple[str, float
     return "g", float(f"{amplitude[0] * frequency[0] ** 2 / GRAVITY:.9g}")
 
 
-def checked_sweep_settings(data: xr.Dataset) -> dict[str, float]:
+def sweep_settings(data: xr.Dataset) -> dict[str, float]:
     """Return transient, samples and tolerance of a sweep; raise if they are out of range."""
     settings = {name: float(data.attrs[name]) for name in SETTINGS}
     transient, samples, tolerance = settings.values()
@@ -158,7 +156,7 @@ def checked_sweep_settings(data: xr.Dataset) -> dict[str, float]:
     return settings
 
 
-def checked_sweep_direction(data: xr.Dataset) -> str:
+def check_sweep(data: xr.Dataset) -> str:
     """Return the direction of a sweep; raise if the page cannot show the sweep."""
     needed = {"eta", "frequency", "amplitude", "impacts_per_period", "end_state"}
     missing = needed - {str(name) for name in data.variables}
@@ -202,15 +200,15 @@ log = logging.getLogger(__name__)
 def first_diagram(structure: Structure, units: Units | None = None) -> SweepData:
     """Return the page's first diagram: Figure 6 for the paper's structure, else an empty one."""
     units = units or Units()
-    if structure != Structure() or not opens_in_ratios(structure, units):
+    if structure != Structure() or not in_ratios(structure, units):
         return empty_sweep(structure, units)
     data = load_result(FILE)
-    if not is_of_present_kernel(data):
+    if not is_current(data):
         log.warning("Figure 6 was computed by another kernel: the page computes its own")
         return empty_sweep(structure, units)
     return read_sweep(data)
 
 
-def is_of_present_kernel(data: xr.Dataset) -> bool:
+def is_current(data: xr.Dataset) -> bool:
     """Return whether the present kernel computed a stored Figure 6."""
     return bool(data.attrs.get(STAMP) == kernel_digest(OSCILLATOR))

@@ -49,13 +49,12 @@ class View:
 
     @property
     def link_text(self) -> str:
-        """Return the part of the page's address that shows this motion."""
         low, high = self.region
         start = ",".join(f"{value:g}" for value in self.start)
         level = {"g": self.level} if self.level else {}
         words = {"from": low, "to": high, "direction": self.direction, **self.changes, **level}
-        parts = [f"{name}={value}" for name, value in words.items()]
-        return "&".join([*parts, f"eta={self.eta}", f"start={start}"])
+        said = [f"{name}={value}" for name, value in words.items()]
+        return "&".join([*said, f"eta={self.eta}", f"start={start}"])
 
     @property
     def structure(self) -> Structure:
@@ -124,13 +123,11 @@ STEPS = (
 )
 
 
-def convert_quantities(text: str, units: Mapping[str, str]) -> str:
-    """Return a text in which numbers in braces, with their units, are in other units."""
-
+def in_units(text: str, shown: Mapping[str, str]) -> str:
     def convert(match: re.Match[str]) -> str:
         number, unit = match.groups()
         sizes = FACTORS[KINDS[unit]]
-        word = units[KINDS[unit]]
+        word = shown[KINDS[unit]]
         scale = sizes[unit] / (OMEGA if word == "eta" else sizes[word])
         value = format(Decimal(f"{float(number) * scale:.4g}"), "f")  # without an exponent
         return f"η = {value}" if word == "eta" else f"{value} {SPELLED.get(word, word)}"
@@ -138,17 +135,15 @@ def convert_quantities(text: str, units: Mapping[str, str]) -> str:
     return QUANTITY.sub(convert, text)
 
 
-def tour_in_units(units: Mapping[str, str]) -> tuple[Step, ...]:
+def tour_in(shown: Mapping[str, str]) -> tuple[Step, ...]:
     return tuple(
         replace(
             step,
-            text=convert_quantities(step.text, units),
-            stops=tuple(
-                replace(stop, label=convert_quantities(stop.label, units)) for stop in step.stops
-            ),
+            text=in_units(step.text, shown),
+            stops=tuple(replace(stop, label=in_units(stop.label, shown)) for stop in step.stops),
         )
         for step in STEPS
     )
 
 
-TOUR = tour_in_units(USUAL)
+TOUR = tour_in(USUAL)

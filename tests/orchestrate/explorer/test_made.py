@@ -129,7 +129,7 @@ ANEW = "the kernel has changed: make Figure 6 of the explorer anew, python -m to
 
 
 def test_figure_6_comes_from_the_present_kernel():
-    assert sweep_data.is_of_present_kernel(load_result(sweep_data.FILE)), ANEW
+    assert sweep_data.is_current(load_result(sweep_data.FILE)), ANEW
 
 
 @pytest.mark.parametrize("first", [0, 1100, 2850, 7896])  # chaos at 1100 and 2850

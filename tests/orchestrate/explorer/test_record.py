@@ -8,7 +8,7 @@ import pytest
 import orchestrate
 from orchestrate import cli
 from orchestrate.errors import InputError
-from orchestrate.explorer.measured import record_for_page
+from orchestrate.explorer.measured import record_json
 
 RECORDS = Path(__file__).parents[3] / "docs" / "records"
 SERIES = """
@@ -36,7 +36,7 @@ def sines(last):
 
 
 def test_a_swept_sine_is_its_orders_and_no_spectrum():
-    drawn = record_for_page(sines(40.0))["record"]
+    drawn = record_json(sines(40.0))["record"]
     assert set(drawn) == {"title", "orders"}
     frequency, rows = (np.array(drawn["orders"][name]) for name in ("frequency", "amplitude"))
     assert (np.diff(frequency) > 0.0).all() and 20.0 < frequency[0] < 22.0
@@ -46,7 +46,7 @@ def test_a_swept_sine_is_its_orders_and_no_spectrum():
 
 def test_without_a_base_a_sweep_cannot_be_known_and_the_record_is_refused():
     with pytest.raises(InputError, match="record: no box_acceleration; expected box_acc"):
-        record_for_page(sines(40.0).drop_vars("box_acceleration"))
+        record_json(sines(40.0).drop_vars("box_acceleration"))
 
 
 def test_the_page_draws_the_orders_at_the_frequency_that_is_shown(chromium, tmp_path, capsys):
