@@ -100,7 +100,9 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
             for state, one in states.items()
         ]
         running = self.running_keywords()
-        compute_into_folder(jobs, self.output, RunOptions.from_keywords(running), make_fmu_finder(running))
+        compute_into_folder(
+            jobs, self.output, RunOptions.from_keywords(running), make_fmu_finder(running)
+        )
         self.job, self.stationary = jobs[0], None
         if self.branches:
             delaminated = next(iter(states.values())).as_delaminated()

@@ -196,7 +196,9 @@ def cosimulate(
         points=points,
     )
     check_input_connections(job.inputs, links)
-    found = compute_dataset(job, running, make_fmu_finder(running), job.drive_sha256 if foreign else "")
+    found = compute_dataset(
+        job, running, make_fmu_finder(running), job.drive_sha256 if foreign else ""
+    )
     warn_of_run(found, links, estimate)
     return found
 
