@@ -1,7 +1,6 @@
 """The translator: what its C computes against what the Python computes, and what it refuses."""
 
 import ctypes
-import functools
 import shutil
 import subprocess
 import textwrap
@@ -9,12 +8,8 @@ from importlib import util
 
 import pytest
 
-from fmu_src.export import forms
 from fmu_src.export.errors import CannotExport
-from fmu_src.export.sources import load_model
 from fmu_src.export.translation.kernel import translate
-
-from ..sparing import ordinary
 
 CC = shutil.which("gcc") or shutil.which("cc") or shutil.which("clang")
 EXPORT = """
@@ -116,23 +111,3 @@ def test_floor_is_exact(tmp_path):
         memory, expected = (ctypes.c_double * 2)(), [0.0, 0.0]
         assert entry(memory, value) == own(expected, value) == 0
         assert [x.hex() for x in memory] == [x.hex() for x in expected], value
-
-
-@functools.cache
-def kernel_of(folder):
-    """A model's kernel in C."""
-    return translate(load_model(folder).entries)
-
-
-@pytest.mark.parametrize("folder", ordinary(forms.MODELS.values()))
-def test_kernels_compile_without_a_warning(tmp_path, folder):
-    """As C99, and by what they say need nothing but sqrt and fabs of the C library."""
-    if CC is None:
-        pytest.skip("no C compiler on this machine")
-    library(tmp_path, kernel_of(folder), "-O0")
-    undefined = subprocess.run(
-        ["nm", "-u", "kernel-O0.so"], cwd=tmp_path, capture_output=True, text=True, check=True
-    ).stdout.split()
-    called = {name.partition("@")[0] for name in undefined if name not in "Uw"}
-    allowed = {"sqrt", "fabs", "memset", "memcpy"}
-    assert {name for name in called if not name.startswith("_")} <= allowed

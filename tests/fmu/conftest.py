@@ -11,14 +11,7 @@ from .driver import FMUS
 from .programs.driver import free_all
 
 FORMS = list(FMUS)
-OF_NUMBERS = (
-    "test_forces",
-    "test_motion",
-    "test_guarantees",
-    "test_energy",
-    "test_outputs",
-    "test_importers",
-)
+NUMBERS = ("chattering", "energy", "forces", "guarantees", "importers", "motion", "outputs")
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -68,7 +61,7 @@ def pytest_collection_modifyitems(items):
         here = Path(__file__).parent in item.path.parents
         if names is None or "fmu" not in names.params or not here:
             continue
-        numbers = item.path.stem in OF_NUMBERS
+        numbers = item.path.stem.removeprefix("test_") in NUMBERS
         form = names.params["fmu"]
         number = cases[item.path, "" if numbers else item.originalname, form]
         cases[item.path, "" if numbers else item.originalname, form] += 1

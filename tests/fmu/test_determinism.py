@@ -26,18 +26,6 @@ def moments(f):
     return found
 
 
-def test_two_instances_side_by_side(fmu):
-    """Stepped in turns, with other parameters in between, they do not touch each other."""
-    lone, one, two = (open_fmu(fmu).start(**harmonic(1.13)) for _ in range(3))
-    other = open_fmu(fmu, name="other").start(m1=2.0, m2=3.0, e=0.2)
-    expected = [lone.step(float(k)).outputs() for k in range(1, 257)]
-    for k, row in enumerate(expected, 1):
-        found = one.step(float(k)).outputs()
-        other.step(float(k))
-        assert found == row == two.step(float(k)).outputs() != other.outputs()
-    assert expected[-1]["impact_count"] > 50
-
-
 def test_two_processes(fmu, tmp_path):
     """And a state that was saved in this one goes on in another."""
     f = open_fmu(fmu).start(**harmonic(1.13)).step(77.0)

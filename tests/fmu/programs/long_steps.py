@@ -1,13 +1,15 @@
-"""Steps that nobody can count the oscillations of, each in a fresh process: one could never end."""
+"""Steps that nobody can count the oscillations of, in a fresh process: one could never end."""
 
 from driver import Refused, open_fmu
 
 
-def outcomes(path, start_time, values, size):
-    """What a start or a step is refused with, or an empty text.
+def outcomes(path, steps):
+    """What starts or steps are refused with, or empty texts: by start time, values and length."""
+    return [outcome(path, *step) for step in steps]
 
-    After a step that is refused one of no length is done.
-    """
+
+def outcome(path, start_time, values, size):
+    """After a step that is refused one of no length is done."""
     f, refusals = open_fmu(path), []
     try:
         f.start(start_time, **values)

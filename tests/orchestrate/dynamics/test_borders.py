@@ -21,9 +21,7 @@ from .single_impact import SingleImpact
 PAPER = Structure.nondimensional(e=0.7, D=0.005)
 LIMITS = {"e": (0.6, 0.8), "D": (0.003, 0.01), "kappa": (1.15, 1.3)}
 KINDS = ("Neimark-Sacker", "period_doubling", "grazing_of_a_flight")
-CURVES = [
-    (kind, list(LIMITS)[(i + shift) % 3]) for shift in range(3) for i, kind in enumerate(KINDS)
-]
+CURVES = [(kind, list(LIMITS)[(i + k) % 3]) for k in range(3) for i, kind in enumerate(KINDS)]
 
 
 @functools.cache
@@ -42,9 +40,8 @@ def number(kind):
 @pytest.mark.parametrize(("kind", "over"), ordinary(CURVES, several_names=True))
 def test_curves_are_where_the_closed_form_has_the_bifurcation(kind, over):
     limits, at = [(2.5, 5.0), LIMITS[over]], number(kind)
-    found = border(
-        PAPER, start=window(), bifurcation=at, over=("eta", over), limits=limits, longest=0.4
-    )
+    asked = {"over": ("eta", over), "limits": limits, "longest": 0.4}
+    found = border(PAPER, start=window(), bifurcation=at, **asked)
     assert found.sizes["point"] > 5
     for i, end in ((0, "first_end"), (-1, "last_end")):
         assert found.attrs[end] != "limit" or found[over].values[i] in LIMITS[over]
@@ -105,13 +102,8 @@ def test_a_border_begins_where_an_open_structure_touches():
     limits = (0.9 * touching, 1.4 * touching)
     found = orchestrate.branch(wide, start=apart, over="clearance", limits=limits)
     assert found.bifurcation_value.values == pytest.approx([touching], rel=1e-9)
-    curve = orchestrate.border(
-        wide,
-        start=found,
-        bifurcation=0,
-        over=("clearance", "amplitude"),
-        limits=[(0.5 * touching, 1.4 * touching), (0.6, 1.3)],
-        longest=0.1,
-    )
+    limits = [(0.5 * touching, 1.4 * touching), (0.6, 1.3)]
+    asked = {"over": ("clearance", "amplitude"), "limits": limits, "longest": 0.1}
+    curve = orchestrate.border(wide, start=found, bifurcation=0, **asked)
     assert curve.sizes["point"] > 3
     assert curve.clearance.values / curve.amplitude.values == pytest.approx(touching, rel=1e-8)

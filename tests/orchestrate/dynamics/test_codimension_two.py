@@ -37,15 +37,8 @@ def points(period, kind, over, limits):
     start = window(period)
     names = flag_words(start.bifurcation_kind.attrs)
     numbers = [i for i, k in enumerate(start.bifurcation_kind.values) if names[int(k)] == kind]
-    found = orchestrate.border(
-        PAPER,
-        start=start,
-        bifurcation=numbers[0],
-        over=("eta", over),
-        limits=[(1.0, 7.0), limits],
-        longest=0.5,
-        **QUIET,
-    )
+    asked = {"over": ("eta", over), "limits": [(1.0, 7.0), limits], "longest": 0.5}
+    found = orchestrate.border(PAPER, start=start, bifurcation=numbers[0], **asked, **QUIET)
     words = flag_words(found.codimension_two_kind.attrs)
     table = {}
     for number, at in enumerate(found.codimension_two_kind.values):

@@ -29,13 +29,10 @@ from .test_closed_form import random_orbit
 PAPER = Structure.nondimensional()
 USUAL = settling_run()
 # chattering ends where the next flight lasts less than 1e-4
-CONTACT = Structure.nondimensional(
-    mu=2.1943, kappa=0.4061, D=0.0116, e=0.4291, gamma=1e-4 / (1.0 - 0.4291)
-)
-HEAVY = Structure.nondimensional(
-    **{"mu": 3.0755, "kappa": 0.54559, "D1": 0.01281, "D2": 0.01196},
-    **{"e": 0.30528, "gamma": 1e-4 / (1.0 - 0.30528)},
-)
+LAST = {"gamma": 1e-4 / (1.0 - 0.4291)}
+CONTACT = Structure.nondimensional(mu=2.1943, kappa=0.4061, D=0.0116, e=0.4291, **LAST)
+HEAVY = Structure.nondimensional(mu=3.0755, kappa=0.54559, D1=0.01281, D2=0.01196, e=0.30528)
+HEAVY = HEAVY.replace(gamma=1e-4 / (1.0 - 0.30528))
 
 pytestmark = pytest.mark.usefixtures("exported")
 
@@ -44,18 +41,10 @@ def point_of(structure, eta):
     return Point(structure, Excitation.nondimensional(eta, structure))
 
 
-@pytest.mark.parametrize(
-    ("flags", "expected"),
-    [
-        ("0110", 1),
-        ("10011", 4),
-        ("1110011", 0),
-        ("0000", 0),
-        ("1111", 0),
-        ("0011111000", 4),
-        ("0111010", 2),
-    ],
-)
+MIDDLES = {"0110": 1, "10011": 4, "1110011": 0, "0000": 0, "1111": 0, "0011111000": 4, "0111010": 2}
+
+
+@pytest.mark.parametrize(("flags", "expected"), MIDDLES.items())
 def test_the_middle_of_the_longest_run_on_a_ring(flags, expected):
     assert middle_of_longest_run(np.array([letter == "1" for letter in flags])) == expected
 
@@ -172,12 +161,8 @@ def test_what_rounding_leaves_of_a_deviation_does_not_count(monkeypatch, left, c
 @pytest.mark.parametrize(
     ("multiplier", "n", "longest", "periods", "own"),
     [
-        *(
-            (0.999, 2, 7, 6, 1),
-            (0.999, 8, 7, 8, 1),
-            (0.9, 1, 99, 22, 1),
-            (1e-9, 1, 99, 1, 1),
-        ),  # of 22 a tenth is left
+        # of 22 a tenth is left
+        *((0.999, 2, 7, 6, 1), (0.999, 8, 7, 8, 1), (0.9, 1, 99, 22, 1), (1e-9, 1, 99, 1, 1)),
         # of what repeats after 2 or 3 periods one state is nearer to another motion than the next
         *((1e-9, 1, 99, 2, 2), (0.9, 1, 99, 24, 3), (0.9, 2, 99, 44, 4), (1e-9, 6, 99, 6, 3)),
     ],
@@ -267,15 +252,8 @@ def test_an_orbit_is_one_to_which_the_fmu_returns(monkeypatch, away, impacts, pe
     ],
 )
 def test_an_orbit_goes_on_at_a_neighbour_if_it_is_stable_and_the_fmu_has_it(changes, continued):
-    orbit = SimpleNamespace(sequence=None, nodes=None)
-    given = {
-        "own": 0.99e-5,
-        "stable": True,
-        "stays": True,
-        "orbit": orbit,
-        "eventful": "",
-        **changes,
-    }
+    given = {"own": 0.99e-5, "stable": True, "stays": True, "eventful": ""}
+    given |= {"orbit": SimpleNamespace(sequence=None, nodes=None), **changes}
     decider, own = Scripted(), given["own"] and Scripted().motion(given["own"])
     motion = decider.motion()
     motion.states, motion.orbit, decider.eventful = [REST], given["orbit"], given["eventful"]
@@ -334,15 +312,15 @@ def told(data):
     return sorted(zip(n.tolist(), (n * here.impacts_per_period.values).tolist(), strict=True))
 
 
-@pytest.mark.parametrize(
-    ("structure", "eta", "asked", "expected"),
-    [
-        (CONTACT, 3.0952, {"starts": 60, "seed": 3}, [(2, 1), (11, 32)]),
-        (HEAVY, 2.67054, {"starts": 60}, [(2, 1), (5, 9)]),
-    ],
-    ids=["11T once", "no 5T with 8 impacts"],
-)
-def test_attractors_are_those_that_newtons_method_confirms(structure, eta, asked, expected):
+FOUND = {
+    "11T once": (CONTACT, 3.0952, {"starts": 60, "seed": 3}, [(2, 1), (11, 32)]),
+    "no 5T with 8 impacts": (HEAVY, 2.67054, {"starts": 60}, [(2, 1), (5, 9)]),
+}
+
+
+@pytest.mark.parametrize("name", FOUND)
+def test_attractors_are_those_that_newtons_method_confirms(name):
+    structure, eta, asked, expected = FOUND[name]
     found = attractors(structure, eta=eta, **asked)
     assert told(found) == [tuple(map(float, pair)) for pair in expected]
     for k in range(found.sizes["attractor"]):

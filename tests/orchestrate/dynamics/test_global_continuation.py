@@ -57,14 +57,8 @@ def value(*motions, apart=0.0):
 
 
 def motion(n, impacts, apart):
-    states = np.ones((max(n, 1), 4))
-    return SimpleNamespace(
-        multiplicity=n,
-        impacts_per_period=impacts,
-        point=POINT,
-        states=states,
-        nearest_state=lambda state: (0, apart),
-    )
+    own = {"multiplicity": n, "impacts_per_period": impacts, "states": np.ones((max(n, 1), 4))}
+    return SimpleNamespace(**own, point=POINT, nearest_state=lambda state: (0, apart))
 
 
 T, TWO, FOUR, OTHER = (1, 1.0), (2, 1.5), (4, 1.5), (3, 2.0)

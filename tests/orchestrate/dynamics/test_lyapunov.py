@@ -186,9 +186,7 @@ def test_permanent_contact_forgets_the_gap(exported):
     [
         ((0.41922, -1.62319), 1.2583),  # Henon's map: Sprott, Chaos and Time-Series Analysis, 2003
         ((0.9056, 0.0, -14.5723), 2.0621),  # Lorenz's flow, there too
-        ((0.1, -math.inf), 1.0),
-        ((-0.1, -0.2), 0.0),
-        ((0.2, 0.1), 2.0),
+        *(((0.1, -math.inf), 1.0), ((-0.1, -0.2), 0.0), ((0.2, 0.1), 2.0)),
     ],
 )
 def test_dimension(exponents, dimension):

@@ -19,7 +19,7 @@ from orchestrate.dynamics.curve_growth import (
     ItineraryChange,
     shrinking_power,
 )
-from orchestrate.fmu import OSCILLATOR, Instance, start_motion
+from orchestrate.fmu import OSCILLATOR, Instance, find_or_export, start_motion
 from orchestrate.model.ranges import PUSHES
 from orchestrate.response.questions import make_point
 
@@ -33,9 +33,8 @@ START = 1e-5  # of the first piece, from the saddle
 
 def grown(image, spacing=1.0, **more):
     """The numbers of a curve's points, of states along an axis or in a plane."""
-    settings = GrowthSettings(
-        **{"length": 1e9, "angle": 0.2, "max_points": 5} | more, spacing=spacing
-    )
+    usual = {"length": 1e9, "angle": 0.2, "max_points": 5}
+    settings = GrowthSettings(**usual | more, spacing=spacing)
     asked = iter(range(200))  # at most
     point = lambda s: CurvePoint(s, *image(s + 0.0 * next(asked)))  # noqa: E731
     return [each.s for each in CurveGrower(point, settings).grow().points]
@@ -179,9 +178,8 @@ def images(step, growth, fold=lambda state: (0,)):
 def test_a_parabola_that_is_a_manifold_exactly():
     """Of (a x, b y + (a^2 - b) x^2), y = x^2 is invariant; distance and angle are kept."""
     a, b = 1.7, 0.4
-    curve = CurveGrower(
-        images(lambda z: np.array([a * z[0], b * z[1] + (a * a - b) * z[0] ** 2]), a), SETTINGS
-    ).grow()
+    step = lambda z: np.array([a * z[0], b * z[1] + (a * a - b) * z[0] ** 2])  # noqa: E731
+    curve = CurveGrower(images(step, a), SETTINGS).grow()
     states = np.array([point.state for point in curve.points])
     x, y = states.T
     assert y == pytest.approx(x**2, abs=3.0 * START**2)
@@ -245,7 +243,7 @@ def test_images_of_its_points_lie_on_it():
     """By the FMU, two periods: on the points of numbers greater by 1, to 1e-8."""
     job = manifolds.ManifoldJob(**job_fields())
     saddle, sides = job.solve_saddle(), {}
-    with Instance(exported_path()) as instance:
+    with Instance(find_or_export(OSCILLATOR).path) as instance:
         data = curve()
         part = data.sel(side="-")
         numbers = np.flatnonzero((part.iterate.values > 1.0) & (part.iterate.values < 4.0))[::9]
@@ -268,12 +266,6 @@ def job_fields():
     names = {"name": "manifold", "structure": PAPER, "excitation": (("eta", 3.0),)}
     pushes = dict.fromkeys(PUSHES, 0.0)
     return {**names, **pushes, "start": found, "period": 1, **numbers}
-
-
-def exported_path():
-    from orchestrate.fmu import make_fmu_finder
-
-    return make_fmu_finder({})(OSCILLATOR).path
 
 
 def test_breaks_are_rows_of_nan_and_never_connected():

@@ -107,16 +107,13 @@ def test_a_branch_goes_on_with_impacts_at_the_outer_end_of_a_play():
     first = orchestrate.branch(play, start=start, limits=(1.0, 2.5), **along)
     (touching,) = bifurcations(first, Kind.TOUCHING)
     other = orchestrate.branch(play, start=first, switch=0, limits=(1.0, 2.5), **along)
-    assert (
-        set(first.node_kind.values.ravel()) == {0}
-        and first.attrs["last_end"] == "grazing of a flight"
-    )
+    assert set(first.node_kind.values.ravel()) == {0}
+    assert first.attrs["last_end"] == "grazing of a flight"
     assert set(other.node_kind.values.ravel()) == {0, 3} and other.fmu_same_impacts[1:].all()
     assert other.force1[0] == pytest.approx(touching, abs=1e-9)
     limits = ((1.0, 2.5), (2.2, 2.8))
-    curve = orchestrate.border(
-        play, start=first, bifurcation=0, **{**along, "over": ("force1", "stroke")}, limits=limits
-    )
+    along["over"] = ("force1", "stroke")
+    curve = orchestrate.border(play, start=first, bifurcation=0, **along, limits=limits)
     assert np.abs(curve.xi_rel_max - curve.stroke / curve.force1).max() < 1e-13
     last = first.isel(point=-1).state.values[0]
     asked = {**box, "start": last, "transient": 100, "periods": 20, **QUICK}

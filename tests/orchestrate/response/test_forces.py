@@ -48,7 +48,8 @@ def pushes_of(structure):
 @pytest.mark.parametrize("kind", KINDS)
 def test_simulate_is_the_motion_of_an_independent_solver(kind):
     structure = KINDS[kind]
-    motion = orchestrate.simulate(structure, **BOX, **pushes_of(structure), periods=4, phase=0.4)
+    short = {"periods": 4, "points": 25, "phase": 0.4}
+    motion = orchestrate.simulate(structure, **BOX, **pushes_of(structure), **short)
     exact = solver(structure, 0.4)
     rows, felt = [], []
     for time in motion.time.values:

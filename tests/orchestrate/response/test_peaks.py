@@ -62,9 +62,8 @@ def largest(point: Point, start: np.ndarray, periods: int) -> np.ndarray:
 @pytest.mark.parametrize(("structure", "eta"), CASES)
 def test_against_dense_communication_points(structure, eta):
     point = Point(structure, Excitation.nondimensional(eta, structure))
-    settings = LoopSettings(
-        transient=60, samples=48, tolerance=1e-2, decides=True, peak_periods=PERIODS
-    )
+    asked = {"transient": 60, "samples": 48, "tolerance": 1e-2, "peak_periods": PERIODS}
+    settings = LoopSettings(**asked, decides=True)
     with Instance(find_or_export(OSCILLATOR).path) as instance:
         results = response_loop(instance).simulate([point], [(0.0, 0.0, 0.0, 0.0)], settings)
     multiplicity = int(results.counts["multiplicity"][0])

@@ -77,11 +77,9 @@ def test_a_steep_step_that_both_directions_have_is_no_jump():
     halves = {"m1": 0.15, "m2": 0.12, "f1": 42.0, "f2": 53.0, "zeta1": 0.007, "zeta2": 0.007}
     frequency = 2.0 * np.pi * np.arange(47.0, 51.1, 0.25)
     asked = {"frequency": frequency, "amplitude": 0.49 / 300.0**2}
-    both = resonance(Structure.from_halves(**halves, e=0.6), **asked)
-    assert (
-        both.sizes["jump"] == 0
-        and resonance(Structure.from_halves(**halves, e=0.6), **asked, direction="up").sizes["jump"]
-    )
+    structure = Structure.from_halves(**halves, e=0.6)
+    assert resonance(structure, **asked).sizes["jump"] == 0
+    assert resonance(structure, **asked, direction="up").sizes["jump"]
 
 
 @given(st.lists(st.booleans(), min_size=1, max_size=40))
@@ -126,9 +124,8 @@ def test_a_jump_and_what_is_none():
     assert len(jump_indices(irregular, 0.15)) < 8
 
 
-PRESSED = Structure.from_halves(
-    m1=1.0, m2=1.2, f1=42.0, f2=55.0, zeta1=0.01, zeta2=0.01, clearance=-2e-5
-)
+HALVES = {"m1": 1.0, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.01, "zeta2": 0.01}
+PRESSED = Structure.from_halves(**HALVES, clearance=-2e-5)
 HERTZ = (2.0 * np.pi) * 47.0
 LEVELS = [0.05, 1.0, 6.0]
 SHORT = {"transient": 60, "samples": 6, "progress": False}

@@ -24,12 +24,7 @@ from orchestrate.response.response_loop import LoopSettings, response_loop
 from ...draws import draw_structure
 
 pytestmark = pytest.mark.usefixtures("exported")
-SETTINGS = {  # of a loop that decides
-    "samples": 40,
-    "tolerance": 1e-2,
-    "decides": True,
-    "peak_periods": 8,
-}
+SETTINGS = {"samples": 40, "tolerance": 1e-2, "decides": True, "peak_periods": 8}
 
 
 @pytest.fixture
@@ -113,9 +108,8 @@ def test_a_response_ends_where_it_comes_near_a_known_motion(instance, same):
     states, gap = sample_stroboscopically(instance, period, 0, 960)
     orbit = SimpleNamespace(states=states[-1:], gap=gap)
     far = SimpleNamespace(states=states[-2:] + 20.0, gap=gap)
-    away = [
-        nearest_state(orbit.states, frequency, gap, states[k - 1])[1] for k in range(16, 401, 16)
-    ]
+    seen = (states[k - 1] for k in range(16, 401, 16))
+    away = [nearest_state(orbit.states, frequency, gap, state)[1] for state in seen]
     pairs = enumerate(zip([np.inf, *away], away, strict=False))
     looks = [look for look, (before, now) in pairs if before < same and now < before]
     settings = LoopSettings(transient=400, samples=8, same=same, known=(far, orbit))
@@ -129,6 +123,5 @@ def test_a_response_ends_where_it_comes_near_a_known_motion(instance, same):
 def test_structures_have_the_sizes_of_the_source():
     """A field forgotten on one side would shift all that follow."""
     sizes = (ctypes.c_uint * 3).in_dll(respond_library(), "sizes_of_respond")
-    assert list(sizes) == [
-        ctypes.sizeof(kind) for kind in (OscillatorCalls, ResponseTask, ResponseProgress)
-    ]
+    kinds = (OscillatorCalls, ResponseTask, ResponseProgress)
+    assert list(sizes) == [ctypes.sizeof(kind) for kind in kinds]

@@ -28,11 +28,8 @@ BEAM = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=52.0, zeta1=0.01)
 PRESSED = Structure.from_halves(m1=1.0, m2=1.0, f1=42.0, f2=55.0, clearance=-20e-6)
 SWEPT = orchestrate.SweptSine(first=40.0, last=56.0, duration=4.0, acceleration=4.0)
 SHAKER = orchestrate.Shaker.from_file("shaker_100N").replace(table_mass=5.0)
-CONTROL = orchestrate.LevelControl(
-    sine=orchestrate.SweptSine(first=8.0, last=9.0, duration=1.0, acceleration=0.2),
-    start=0.1,
-    limit=30.0,
-)
+SINE = orchestrate.SweptSine(first=8.0, last=9.0, duration=1.0, acceleration=0.2)
+CONTROL = orchestrate.LevelControl(sine=SINE, start=0.1, limit=30.0)
 SPEED_CONTROL = orchestrate.SpeedControl(speed=1.4, gain=3.0, reset_time=20.0)
 Ask = Callable[..., xr.Dataset]
 
@@ -51,10 +48,8 @@ def detect(**running: Any) -> xr.Dataset:
 
 def border(**running: Any) -> xr.Dataset:
     window = orchestrate.branch(UNIT, eta=2.6, limits=(2.5, 2.7), progress=False)
-    limits = [(2.5, 2.7), (0.69, 0.71)]
-    return orchestrate.border(
-        UNIT, start=window, bifurcation=0, limits=limits, longest=0.5, **running
-    )
+    asked = {"limits": [(2.5, 2.7), (0.69, 0.71)], "longest": 0.5}
+    return orchestrate.border(UNIT, start=window, bifurcation=0, **asked, **running)
 
 
 def asked(function: Any, *structures: Any, **call: Any) -> Ask:
@@ -62,75 +57,45 @@ def asked(function: Any, *structures: Any, **call: Any) -> Ask:
     return lambda **running: function(*structures, **call, **running)
 
 
-ETAS = {"eta": [0.9, 1.0, 1.05, 1.1, 1.2]}
+ETAS = {"eta": [0.9, 1.0, 1.1]}
+CONTROLLED = {"inputs": {"command": CONTROL}, "duration": 0.3, "step": 2e-3}
+SETTLED = {"voltage": 1.3, "begin": 1.29, "hold": 50.0}
+HELD = {"voltage": 1.5, "duration": 30.0}
+PLANE = {"eta": 1.1, "x": ("x_rel", 0.0, 1.0, 3), "y": ("v_rel", -1.0, 1.0, 2)}
+LEVELS = {"frequency": [250.0], "level": [0.1]}
+CAPTURED = {"voltage": (1.5, 1.6), "count": 2, "tolerance": 0.05, "step": 0.4}
 RAMP = {"rates": [8e-4, 4e-4], "back": False, "step": 0.4, "settle": 50.0}
 QUESTIONS: Mapping[str, tuple[int, Ask]] = {  # with the items of a chunk
     "SimulateJob": (1, asked(orchestrate.simulate, UNIT, eta=1.1, periods=3)),
     "ResonanceJob": (2, asked(orchestrate.resonance, UNIT, **ETAS, **SHORT)),
-    "ResonanceLevelsJob": (
-        2,
-        asked(orchestrate.resonance_levels, PRESSED, frequency=[250.0], level=[0.1], **SHORT),
-    ),
+    "ResonanceLevelsJob": (2, asked(orchestrate.resonance_levels, PRESSED, **LEVELS, **SHORT)),
     "SweepJob": (2, asked(orchestrate.sweep, UNIT, **ETAS, **SHORT, direction="both")),
     "IndependentStartsJob": (2, asked(orchestrate.sweep, UNIT, **ETAS, **SHORT, direction="given")),
     "MapJob": (2, asked(orchestrate.map, UNIT, eta=[1.0, 1.1], e=[0.3, 0.7], transient=20)),
     "LyapunovJob": (2, asked(orchestrate.lyapunov, UNIT, **ETAS, transient=20, periods=100)),
-    "AttractorsJob": (
-        3,
-        asked(orchestrate.attractors, UNIT, eta=[1.0, 1.1], starts=4, seed=1, transient=20),
-    ),
-    "BasinJob": (
-        2,
-        asked(
-            orchestrate.basin,
-            *(UNIT,),
-            **{"eta": 1.1, "x": ("x_rel", 0.0, 1.0, 3), "y": ("v_rel", -1.0, 1.0, 2)},
-            transient=20,
-        ),
-    ),
+    "AttractorsJob": (3, asked(orchestrate.attractors, UNIT, eta=1.1, starts=4, transient=20)),
+    "BasinJob": (4, asked(orchestrate.basin, UNIT, **PLANE, transient=20)),
     "SpectraJob": (1, asked(orchestrate.spectra, UNIT, eta=[1.0, 1.1], periods=4, points=128)),
     "PoincareJob": (1, asked(orchestrate.poincare, UNIT, eta=1.1, transient=20, periods=20)),
-    "ImpactStatisticsJob": (
-        2,
-        asked(orchestrate.impact_statistics, UNIT, **ETAS, transient=20, periods=20),
-    ),
+    "ImpactStatisticsJob": (2, asked(orchestrate.impact_statistics, UNIT, **ETAS, periods=20)),
     "OrbitJob": (1, asked(orchestrate.orbit, UNIT, eta=2.0)),
     "ManifoldJob": (1, asked(orchestrate.manifold, UNIT, eta=3.0, length=0.3)),
     "BranchJob": (1, asked(orchestrate.branch, UNIT, eta=2.0, limits=(1.95, 2.05))),
     "BorderJob": (1, border),
-    "ShakeJob": (1000, asked(orchestrate.shake, BEAM, SWEPT, sample_rate=600.0)),
-    "CosimulateJob": (
-        40,
-        asked(
-            orchestrate.cosimulate,
-            *(BEAM, SHAKER),
-            **{"inputs": {"command": CONTROL}, "duration": 0.3, "step": 2e-3},
-        ),
-    ),
-    "CoupleJob": (
-        60,
-        asked(orchestrate.couple, *MOTOR, voltage=1.5, duration=30.0, control=SPEED_CONTROL),
-    ),
-    "PassageJob": (100, asked(orchestrate.passage, *MOTOR, voltage=1.5, duration=50.0)),
+    "ShakeJob": (2500, asked(orchestrate.shake, BEAM, SWEPT, sample_rate=600.0)),
+    "CosimulateJob": (80, asked(orchestrate.cosimulate, BEAM, SHAKER, **CONTROLLED)),
+    "CoupleJob": (200, asked(orchestrate.couple, *MOTOR, **HELD, control=SPEED_CONTROL)),
+    "PassageJob": (200, asked(orchestrate.passage, *MOTOR, **HELD)),
     "JumpVoltagesJob": (1, asked(orchestrate.jump_voltages, *MOTOR, voltage=(1.5, 1.6), **RAMP)),
     "DriveBranchJob": (1, asked(orchestrate.drive_branch, *MOTOR, speed=(1.29, 1.32), longest=0.2)),
-    "DriveSpectraJob": (
-        1,
-        asked(drive_spectra, *MOTOR, voltage=1.3, begin=1.29, hold=50.0, revolutions=8, points=64),
-    ),
-    "CaptureJob": (
-        1,
-        asked(
-            orchestrate.capture,
-            *(QUICK.as_bonded(), MOTOR[1]),
-            **{"voltage": (1.5, 1.6), "count": 2, "tolerance": 0.05, "step": 0.4},
-        ),
-    ),
+    "DriveSpectraJob": (1, asked(drive_spectra, *MOTOR, **SETTLED, revolutions=8, points=64)),
+    "CaptureJob": (1, asked(orchestrate.capture, QUICK.as_bonded(), MOTOR[1], **CAPTURED)),
     "PlanJob": (1, asked(orchestrate.plan_test, BEAM, levels=[0.5, 5.0], frequencies=[40.0, 56.0])),
     "FitJob": (1, fit),
     "DetectJob": (1, detect),
 }
-SLOW = ("JumpVoltagesJob", "CaptureJob", "DriveBranchJob", "DetectJob", "PlanJob", "BorderJob")
+SLOW = {"JumpVoltagesJob", "CaptureJob", "DriveBranchJob", "DetectJob", "PlanJob", "BorderJob"}
+SLOW |= {"FitJob"}
 
 
 def kinds_of_questions() -> set[type[Job]]:
@@ -155,7 +120,7 @@ class Killed(BaseException):
     """Stands for SIGKILL: what is on the disk at that moment is what is left."""
 
 
-@pytest.mark.parametrize("name", ordinary(QUESTIONS, set(QUESTIONS) - set(SLOW)))
+@pytest.mark.parametrize("name", ordinary(QUESTIONS, set(QUESTIONS) - SLOW))
 def test_killed_after_each_chunk_it_goes_on(exported, tmp_path, monkeypatch, name):
     size, ask = QUESTIONS[name]
     (kind,) = (kind for kind in kinds_of_questions() if kind.__name__ == name)

@@ -35,9 +35,7 @@ class System(NamedTuple):
         return self._replace(drive=self.drive.replace(armature_inductance=inductance))
 
 
-QUICK, BEAM = (
-    System(Structure.from_file(name), Drive.from_file(name)) for name in ("quick", "beam")
-)
+QUICK, BEAM = (System(Structure.from_file(n), Drive.from_file(n)) for n in ("quick", "beam"))
 
 
 def system_of(mu, kappa, D1, D2, e, clearance=0.0, **drive):

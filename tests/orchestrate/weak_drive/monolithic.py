@@ -46,13 +46,8 @@ class Monolith:
         p1, p2 = self.pulls(state)
         torque, current_rate = self.electric(w, i, time)
         c = self.unbalance * math.cos(phi)
-        p = (
-            self.unbalance * w * w * math.sin(phi)
-            - s.box_damping * v
-            - s.box_stiffness * y
-            + p1
-            + p2
-        )
+        p = self.unbalance * w * w * math.sin(phi) - s.box_damping * v - s.box_stiffness * y
+        p += p1 + p2
         determinant = s.box_mass * s.rotor_inertia - c * c
         a = (s.rotor_inertia * p - c * torque) / determinant
         turn = (s.box_mass * torque - c * p) / determinant
@@ -71,10 +66,8 @@ class Monolith:
         """State after an impact, and whether the masses stick."""
         o, (x1, v1, x2, v2), after = self.o, state[:4], list(state)
         both = o.m1 + o.m2
-        common, rebound = (
-            (o.m1 * v1 + o.m2 * v2) / both,
-            o.e * (v1 - v2) / (1.0 + o.e_slope * (v1 - v2)),
-        )
+        common = (o.m1 * v1 + o.m2 * v2) / both
+        rebound = o.e * (v1 - v2) / (1.0 + o.e_slope * (v1 - v2))
         after[0] = after[2] = (o.m1 * x1 + o.m2 * x2) / both
         after[1] = after[3] = common
         pressed = self.parting(after)
@@ -131,11 +124,6 @@ class Monolith:
             return self.parting(z) if together else z[2] - z[0]
 
         end.terminal, end.direction = True, 1.0 if together else -1.0
-        return solve_ivp(
-            lambda t, z: self.rates(z, together, t),
-            (now, times[-1]),
-            state,
-            t_eval=times[times > now],
-            events=None if self.o.bonded else end,
-            **self.tolerance,
-        )
+        asked = {"t_eval": times[times > now], "events": None if self.o.bonded else end}
+        rates = lambda t, z: self.rates(z, together, t)  # noqa: E731
+        return solve_ivp(rates, (now, times[-1]), state, **asked, **self.tolerance)

@@ -1,6 +1,5 @@
 """Somebody else's drive, coupled: against both as one system, and connections that cannot be."""
 
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -11,17 +10,7 @@ import orchestrate
 from orchestrate.errors import FmuError, InputError
 from orchestrate.fmu.description import describe
 from orchestrate.fmu.unit_names import parse_unit
-from orchestrate.weak_drive import cosimulate
-from orchestrate.weak_drive.connection import (
-    FORCE,
-    IN_WORDS,
-    MOTION,
-    PUSHES,
-    UNITS,
-    Connection,
-    Link,
-    propose_connections,
-)
+from orchestrate.weak_drive import connection, cosimulate
 
 from ...sparing import ordinary
 from .drives import table
@@ -30,12 +19,7 @@ from .drives.linear import draw, sine, table_drive, together
 STRUCTURE = orchestrate.Structure(m1=0.5, m2=0.4, k1=300.0, k2=420.0, d1=0.4, d2=0.5, e=0.6)
 PLAY = STRUCTURE.replace(clearance=0.004, stroke=0.015)
 CONNECT = {"box_acceleration": "table_acc", "box_force": "specimen_force"}
-CONNECTIONS = {
-    "acceleration": CONNECT,
-    "velocity": {"box_velocity": "table_vel", "box_force": "specimen_force"},
-    "position": {"box_position": "table_pos", "box_force": "specimen_force"},
-    "both": {**CONNECT, "box_velocity": "table_vel"},
-}
+BOTH = {**CONNECT, "box_velocity": "table_vel"}
 DURATION, EVERY = 2.0, 0.02
 TIMES = np.linspace(0.0, DURATION, round(DURATION / EVERY) + 1)
 FINE = np.linspace(0.0, DURATION, 20001)
@@ -56,10 +40,8 @@ def drive(tmp_path_factory):
     return FmuBuilder.build_FMU(table.__file__, dest=folder)
 
 
-TABLE = replace(
-    table_drive(table.NUMBERS),
-    names=("specimen_force", "volts", "table_acc", "table_pos", "table_vel"),
-)
+NAMES = ("specimen_force", "volts", "table_acc", "table_pos", "table_vel")
+TABLE = replace(table_drive(table.NUMBERS), names=NAMES)
 
 
 @pytest.fixture
@@ -75,27 +57,18 @@ def error(run, truth):
     return np.abs(both - truth).max()
 
 
-ORDERS = {  # connections, structure, steps, largest error over the size, and ratio of errors
-    "velocity": (STRUCTURE, (0.02, 0.01), 0.005, 10.0),
-    "position": (STRUCTURE, (0.02, 0.01), 0.04, 6.0),
-    "both": (PLAY, (0.01, 0.005), 1e-3, 8.0),  # halves that strike at both ends of a play
-}
-
-
-@pytest.mark.parametrize("name", ORDERS)
-def test_errors_under_a_sine_of_the_voltage_fall_with_the_step(native, name):
-    """The voltage is held over each step, by its mean and what makes up for its first moment."""
-    structure, steps, most, ratio = ORDERS[name]
-    truth, impacts = together(TABLE, structure, sine(), TIMES)
-    run = {**RUN, "connect": CONNECTIONS[name], "parameters": TABLE.parameters}
-    coarse, fine = (orchestrate.cosimulate(structure, native, step=h, **run) for h in steps)
-    assert error(coarse, truth) < most * np.abs(truth).max()
-    assert error(coarse, truth) / error(fine, truth) > ratio
-    assert coarse.sizes["impact"] == fine.sizes["impact"] == impacts > (40 if name == "both" else 9)
-    if name == "both":
-        assert fine.x_rel.max() > 0.99 * structure.stroke
-        with pytest.raises(InputError, match="wall = True: cosimulate"):
-            orchestrate.cosimulate(structure.replace(wall=True), native, step=0.01, **run)
+def test_errors_under_a_sine_of_the_voltage_fall_with_the_step(native):
+    """It is held over each step, by its mean and what makes up for its first moment; halves strike
+    at both ends of a play.
+    """
+    truth, impacts = together(TABLE, PLAY, sine(), TIMES)
+    run = {**RUN, "connect": BOTH, "parameters": TABLE.parameters}
+    coarse, fine = (orchestrate.cosimulate(PLAY, native, step=h, **run) for h in (0.01, 0.005))
+    assert 8.0 * error(fine, truth) < error(coarse, truth) < 1e-3 * np.abs(truth).max()
+    assert coarse.sizes["impact"] == fine.sizes["impact"] == impacts > 40
+    assert fine.x_rel.max() > 0.99 * PLAY.stroke
+    with pytest.raises(InputError, match="wall = True: cosimulate"):
+        orchestrate.cosimulate(PLAY.replace(wall=True), native, step=0.01, **run)
 
 
 def jumping(plain):
@@ -105,18 +78,15 @@ def jumping(plain):
     steps = np.arange(0.0, DURATION, 0.1)
     levels = 20.0 * np.sin(26.0 * steps)
     command = lambda t: levels[min(int(t / 0.1 + 1e-9), len(levels) - 1)]  # noqa: E731
-    return (
-        replace(plain, b=b, d=felt),
-        (np.repeat(steps, 2)[1:], np.repeat(levels, 2)[:-1]),
-        command,
-    )
+    course = np.repeat(steps, 2)[1:], np.repeat(levels, 2)[:-1]
+    return replace(plain, b=b, d=felt), course, command
 
 
 LETTERS = ("a", "av", "avp", "v", "p", "ap", "pv")
 
 
 @pytest.mark.usefixtures("here")
-@pytest.mark.parametrize("seed", ordinary([*range(20), "jumps"], [1, 3, 4, 7, "jumps"]))
+@pytest.mark.parametrize("seed", ordinary([*range(20), "jumps"], [3, 4, "jumps"]))
 def test_random_drives_against_one_system(tmp_path, seed):
     """Native ones of FMI 2.0 and 3.0, of any names and signs, connected by any motions; every
     second without feedthrough. What is stated is the error.
@@ -146,7 +116,7 @@ def test_the_stated_error_is_that_of_the_run(native):
     with pytest.warns(UserWarning, match="connect box_velocity, box_position"):
         found = orchestrate.cosimulate(STRUCTURE, native, connect=CONNECT, step=0.01, **run)
     assert 0.5 < error(found, truth) / float(found.coupling_error.max()) < 2.0
-    run |= {"estimate": False, "connect": CONNECTIONS["both"]}
+    run |= {"estimate": False, "connect": BOTH}
     exact = orchestrate.cosimulate(STRUCTURE, native, step=0.001, **run)
     for name in ("table_pos", "table_vel"):
         true = np.abs(found[name].values - exact[name].values[::10]).max()
@@ -268,13 +238,13 @@ def test_a_drive_runs_without_a_structure(drive):
 def test_what_is_proposed_has_the_causality_and_a_name_like_ours(drive):
     names = {"box_acceleration": "table_acc", "box_velocity": "table_vel"}
     names |= {"box_position": "table_pos", "box_force": "specimen_force"}
-    assert propose_connections(describe(drive)) == names
-    for name in (*MOTION, FORCE[0], *PUSHES):
-        assert parse_unit(IN_WORDS[name]).exponents == UNITS[name]
-    assert [UNITS[name]["s"] for name in FORCE] == [-2, -3, -4, -5]
-    assert Connection(
-        {"force2": Link("push", 1.0), "box_force": Link("f", 1.0)}
-    ).connected_pushes == ("force2",)
+    assert connection.propose_connections(describe(drive)) == names
+    units = connection.UNITS
+    for name in (*connection.MOTION, connection.FORCE[0], *connection.PUSHES):
+        assert parse_unit(connection.IN_WORDS[name]).exponents == units[name]
+    assert [units[name]["s"] for name in connection.FORCE] == [-2, -3, -4, -5]
+    links = {name: connection.Link("push", 1.0) for name in ("force2", "box_force")}
+    assert connection.Connection(links).connected_pushes == ("force2",)
 
 
 @pytest.mark.usefixtures("here")
@@ -296,13 +266,9 @@ def test_a_wrong_sign_of_the_force_is_an_error_unless_it_is_given(tmp_path, lett
 def test_a_coupling_that_diverges_says_what_to_look_at(tmp_path, duration):
     """By an acceleration in mm/s2 without a unit."""
     one = draw(2)
-    far = replace(one, c=1e3 * one.c, d=1e3 * one.d).write(tmp_path)
-    run = {
-        "connect": one.connect,
-        "parameters": replace(one, c=1e3 * one.c, d=1e3 * one.d).parameters,
-    }
-    run |= {"inputs": {one.names[1]: 3.0}, "duration": duration, "force_sign": "given", **QUIET}
-    with pytest.raises(FmuError) as raised:
-        orchestrate.cosimulate(STRUCTURE, far, step=0.01, **run)
+    far = replace(one, c=1e3 * one.c, d=1e3 * one.d)
+    run = {"connect": one.connect, "parameters": far.parameters, "force_sign": "given", **QUIET}
+    run |= {"inputs": {one.names[1]: 3.0}, "duration": duration}
     words = rf"at t = [\d.]+ s \(box_force = .* N\): look at the unit of {one.names[2]} .*"
-    assert re.match(f"the coupling diverges {words}", str(raised.value))
+    with pytest.raises(FmuError, match=f"^the coupling diverges {words}"):
+        orchestrate.cosimulate(STRUCTURE, far.write(tmp_path), step=0.01, **run)

@@ -159,7 +159,7 @@ def test_folds_and_what_lies_between():
     """By the averaged theory, to 1e-4; unstable between both folds, and only there."""
     bonded = QUICK.as_bonded()
     asked = {"speed": (1.27, 1.39), "longest": 0.15, "most": np.int64(30), "progress": False}
-    branch = drive_branch(*bonded, **asked)
+    branch = drive_branch(*bonded, settle=200.0, steps=32, **asked)
     up, down = averaged.folds(*bonded)
     assert points(branch, "bonded", "fold") == pytest.approx([up.eta0, down.eta0], abs=1e-4)
     leg = branch.sel(structure="bonded", leg="from below").dropna("point")
@@ -210,7 +210,7 @@ def test_the_doubling_of_one_revolution_motions():
 
 def test_a_branch_ends_where_the_masses_touch():
     """In the monolithic solution too: they turn away from each other with next to no gap."""
-    legs, length = branch_of(QUICK, 60, (0.975, 1.05))
+    legs, length = branch_of(QUICK, 30, (0.98, 1.06))
     (leg,) = (one for one in legs if one.end == "grazing of a flight")
     rows = assert_repeats(QUICK, leg.bifurcations[-1].point, length, 8001)
     gap, slow = rows[:, 2] - rows[:, 0], np.abs(rows[:, 3] - rows[:, 1]) < 0.02 * length

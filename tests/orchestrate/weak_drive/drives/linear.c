@@ -1,6 +1,6 @@
 /* A linear drive of somebody else as an FMU: x' = A x + B u, acceleration C x + D u, exact for inputs
- * that are held over a step. References: parameters from 0, u from 30, outputs from 40.
- * FMI 3.0, or 2.0 with -DFMI=2; with -DDOES=WARNS or another, it does that from the time AT on. */
+ * that are held over a step. References: parameters from 0, u from 30, what it does from the time AT on and
+ * whether it has states at 32, outputs from 40. FMI 3.0, or 2.0 with -DFMI=2. */
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -10,13 +10,7 @@
 #ifndef FMI
 #define FMI 3
 #endif
-#ifndef DOES
-#define DOES NOTHING
-#endif
 #define AT 0.1
-#ifndef STATES_DECLARED
-#define STATES_DECLARED 0
-#endif
 
 enum { N = 4, OK = 0, WARNING = 1, DISCARD = 2, ERROR = 3 };
 enum { NOTHING, WARNS, WARNS_SILENTLY, DISCARDS, DISCARDS_SILENTLY, ENDS, ENDS_AFTER, RETURNS_EARLY, FAILS, DISCARDS_LONG };
@@ -26,7 +20,7 @@ typedef void Log2(void *environment, const char *name, int status, const char *c
 
 typedef struct {
     double a[N][N], b[N][2], c[N], d[2];  /* the parameters, in this order */
-    double u[2], x[N];
+    double u[2], does, has_states, x[N];
     double last;  /* of the last step, for FMI 2.0 */
     int ended;
     void *environment, (*log)(void);
@@ -39,7 +33,7 @@ static void say(Drive *m, int status, const char *message) {
 
 static double *place(Drive *m, unsigned reference, double *value) {
     if (reference < 30) return &m->a[0][0] + reference;
-    if (reference < 32) return m->u + reference - 30;
+    if (reference < 34) return m->u + reference - 30;
     if (reference == 40) {
         *value = m->d[0] * m->u[0] + m->d[1] * m->u[1];
         for (int i = 0; i < N; i++) *value += m->c[i] * m->x[i];
@@ -53,7 +47,7 @@ static int clear(Drive *m) { memset(m, 0, offsetof(Drive, environment)); return 
 static int set(void *m, const unsigned *references, size_t n, const double *values) {
     double none;
     for (size_t i = 0; i < n; i++) {
-        double *at = references[i] < 32 ? place(m, references[i], &none) : NULL;
+        double *at = references[i] < 34 ? place(m, references[i], &none) : NULL;
         if (!at) return ERROR;
         *at = values[i];
     }
@@ -90,14 +84,13 @@ static void integrate(Drive *m, double h) {
 
 /* A step; what it does otherwise, it does in those that end after AT. */
 static int advance(Drive *m, double time, double h, bool *end, bool *early, double *last) {
-    int does = time + h > AT * (1.0 + 1e-9) ? DOES : NOTHING;
+    int kind = (int)m->does, does = time + h > AT * (1.0 + 1e-9) ? kind : NOTHING;
     *end = *early = false, *last = time;
-    if (does == FAILS) say(m, ERROR, "fuse blown");
-    if (does == FAILS) return ERROR;
-    if (DOES == DISCARDS_LONG) does = h > 3e-3 ? DISCARDS : NOTHING;  /* from the start on */
+    if (does == FAILS) return say(m, ERROR, "fuse blown"), ERROR;
+    if (kind == DISCARDS_LONG) does = h > 3e-3 ? DISCARDS : NOTHING;  /* from the start on */
     if (does == DISCARDS) say(m, DISCARD, "coil too hot");
     if (does == DISCARDS || does == DISCARDS_SILENTLY) return DISCARD;
-    *end = does == ENDS || (DOES == ENDS_AFTER && time + h > AT * (1.0 - 1e-9));
+    *end = does == ENDS || (kind == ENDS_AFTER && time + h > AT * (1.0 - 1e-9));
     if (*end) say(m, OK, "the emergency stop was pressed");
     if (does == ENDS) return OK;
     *early = does == RETURNS_EARLY;
@@ -116,8 +109,7 @@ static int advance(Drive *m, double time, double h, bool *end, bool *early, doub
     } \
     int prefix##Set##State(void *m, void *state) { memcpy(m, state, offsetof(Drive, environment)); return OK; } \
     int prefix##Free##State(void *m, void **state) { \
-        if (!STATES_DECLARED) say(m, ERROR, "no states"); \
-        if (!STATES_DECLARED) return ERROR; \
+        if (!((Drive *)m)->has_states) return say(m, ERROR, "no states"), ERROR; \
         free(*state), *state = NULL; \
         return OK; \
     } \

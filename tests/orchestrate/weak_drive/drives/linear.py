@@ -1,9 +1,13 @@
 """Linear drives of somebody else: random ones, their FMUs, and the truth about them."""
 
+import atexit
 import functools
 import math
 import random
+import re
+import shutil
 import subprocess
+import tempfile
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +18,7 @@ from scipy.integrate import solve_ivp
 
 SOURCE = Path(__file__).with_suffix(".c")
 SIZE = 4
+KINDS = re.search("enum { (NOTHING.*) };", SOURCE.read_text())[1].split(", ")  # what it may do
 
 
 @dataclass(frozen=True)
@@ -28,7 +33,7 @@ class LinearDrive:
     signs: tuple[int, int] = (1, 1)  # of the force that it takes, and of its acceleration
     has_states: bool = False
     fmi: int = 3
-    does: str = "NOTHING"  # what its source lists
+    does: str = "NOTHING"  # of KINDS
     unit: str = ""  # of its acceleration by FMI 3.0, a name without a base unit
 
     @property
@@ -38,7 +43,8 @@ class LinearDrive:
         b, d = self.b * (force, 1), self.d * (force, 1) * acceleration
         values = (self.a, b, self.c * acceleration, d)
         numbers = np.concatenate([np.ravel(part) for part in values])
-        return {f"p{i}": float(value) for i, value in enumerate(numbers)}
+        own = {"does": float(KINDS.index(self.does)), "has_states": float(self.has_states)}
+        return {f"p{i}": float(value) for i, value in enumerate(numbers)} | own
 
     @property
     def connect(self):
@@ -48,75 +54,76 @@ class LinearDrive:
     def connected(self, letters):
         """The same of some of acceleration, position and velocity, by their first letters."""
         force, acceleration = ("-" if sign < 0 else "" for sign in self.signs)
-        names = (acceleration + self.names[2], *self.names[3:])
-        motions = zip(
-            "apv", ("box_acceleration", "box_position", "box_velocity"), names, strict=True
-        )
-        found = {ours: theirs for letter, ours, theirs in motions if letter in letters}
-        return {"box_force": force + self.names[0], **found}
+        theirs = {"acceleration": acceleration + self.names[2]}
+        theirs |= dict(zip(("position", "velocity"), self.names[3:], strict=True))
+        motions = {f"box_{name}": own for name, own in theirs.items() if name[0] in letters}
+        return {"box_force": force + self.names[0], **motions}
 
     def write(self, folder, name="Linear"):
         """Write the FMU."""
-        rows = [(f"p{i}", i, "parameter", "fixed", 'start="0"') for i in range(30)]
-        force, command, *outputs = self.names
-        rows += [(force, 30, "input", "continuous", 'start="0"')]
-        rows += [(command, 31, "input", "continuous", 'start="0"')]
+        places = {f"p{i}": i for i in range(30)} | {"does": 32, "has_states": 33}
+        rows = [(one, i, "parameter", 'start="0"') for one, i in places.items()]
+        rows += [(one, 30 + i, "input", 'start="0"') for i, one in enumerate(self.names[:2])]
         units = (f'unit="{self.unit}"' * bool(self.unit), "", "")
-        rows += [(one, 40 + i, "output", "continuous", units[i]) for i, one in enumerate(outputs)]
-        text = (self.description3 if self.fmi == 3 else self.description2)(rows)
-        path = Path(folder) / f"{name}.fmu"
+        rows += [(one, 40 + i, "output", units[i]) for i, one in enumerate(self.names[2:])]
+        path, third = Path(folder) / f"{name}.fmu", self.fmi == 3
         with zipfile.ZipFile(path, "w") as archive:
+            text = (self.description3 if third else self.description2)(rows)
             archive.writestr("modelDescription.xml", f'<?xml version="1.0"?>{text}')
-            library = compiled(Path(folder), self.fmi, self.does, self.has_states)
-            system = platform_tuple if self.fmi == 3 else platform
-            archive.write(library, f"binaries/{system}/linear{sharedLibraryExtension}")
+            system = platform_tuple if third else platform
+            archive.write(library(self.fmi), f"binaries/{system}/linear{sharedLibraryExtension}")
         return path
+
+    def ability(self, state):
+        """Attributes of co-simulation."""
+        flag = str(self.has_states).lower()
+        return (
+            'modelIdentifier="linear" canHandleVariableCommunicationStepSize="true" '
+            f'canGetAndSet{state}="{flag}" canSerialize{state}="{flag}"'
+        )
 
     def description3(self, rows):
         """The description of FMI 3.0."""
-        flag = str(self.has_states).lower()
-        variables = "".join(
-            f'<Float64 name="{n}" valueReference="{i}" causality="{c}" variability="{v}" {start}/>'
-            for n, i, c, v, start in [*rows, ("time", 99, "independent", "continuous", "")]
-        )
-        outputs = "".join(
-            f'<Output valueReference="{i}"/>' for _, i, c, *_ in rows if c == "output"
-        )
+        variables = "".join(f"<Float64 {attributes(*row)} {more}/>" for *row, more in rows)
+        time = 'name="time" valueReference="99" causality="independent" variability="continuous"'
+        outputs = "".join(f'<Output valueReference="{row[1]}"/>' for row in rows[-3:])
         units = f'<UnitDefinitions><Unit name="{self.unit}"/></UnitDefinitions>' * bool(self.unit)
         return (
-            '<fmiModelDescription fmiVersion="3.0" modelName="Linear" '
-            'instantiationToken="1"><CoSimulation modelIdentifier="linear" '
-            f'canHandleVariableCommunicationStepSize="true" canGetAndSetFMUState="{flag}" '
-            f'canSerializeFMUState="{flag}"/>{units}<ModelVariables>{variables}</ModelVariables>'
+            '<fmiModelDescription fmiVersion="3.0" modelName="Linear" instantiationToken="1">'
+            f"<CoSimulation {self.ability('FMUState')}/>{units}<ModelVariables>{variables}"
+            f"<Float64 {time}/></ModelVariables>"
             f"<ModelStructure>{outputs}</ModelStructure></fmiModelDescription>"
         )
 
     def description2(self, rows):
         """The description of FMI 2.0."""
-        flag = str(self.has_states).lower()
         variables = "".join(
-            f'<ScalarVariable name="{n}" valueReference="{i}" causality="{c}" variability="{v}">'
-            f"<Real {start}/></ScalarVariable>"
-            for n, i, c, v, start in rows
+            f"<ScalarVariable {attributes(*row)}><Real {more}/></ScalarVariable>"
+            for *row, more in rows
         )
-        places = [k + 1 for k, row in enumerate(rows) if row[2] == "output"]
-        outputs = "".join(f'<Unknown index="{k}"/>' for k in places)
+        outputs = "".join(f'<Unknown index="{len(rows) - k}"/>' for k in (2, 1, 0))
         return (
             '<fmiModelDescription fmiVersion="2.0" modelName="Linear" guid="1">'
-            '<CoSimulation modelIdentifier="linear" canHandleVariableCommunicationStepSize="true" '
-            f'canGetAndSetFMUstate="{flag}" canSerializeFMUstate="{flag}"/>'
-            f"<ModelVariables>{variables}</ModelVariables><ModelStructure><Outputs>{outputs}</Outputs><InitialUnknowns>{outputs}"
-            "</InitialUnknowns></ModelStructure></fmiModelDescription>"
+            f"<CoSimulation {self.ability('FMUstate')}/><ModelVariables>{variables}"
+            f"</ModelVariables><ModelStructure><Outputs>{outputs}</Outputs><InitialUnknowns>"
+            f"{outputs}</InitialUnknowns></ModelStructure></fmiModelDescription>"
         )
+
+
+def attributes(name, reference, causality):
+    """Attributes of a variable."""
+    kind = "fixed" if causality == "parameter" else "continuous"
+    text = f'name="{name}" valueReference="{reference}" causality="{causality}"'
+    return f'{text} variability="{kind}"'
 
 
 @functools.cache
-def compiled(folder, fmi, does, has_states):
-    """The library of all linear drives that do this."""
-    path = folder / f"linear{fmi}{does}{has_states:d}{sharedLibraryExtension}"
-    line = ["cc", "-O2", "-shared", "-fPIC", f"-DFMI={fmi}", f"-DDOES={does}"]
-    line += [f"-DSTATES_DECLARED={has_states:d}", "-o", path, SOURCE, "-lm"]
+def library(fmi):
+    """The library of all linear drives of an FMI version."""
+    path = Path(tempfile.mkdtemp()) / f"linear{sharedLibraryExtension}"
+    line = ["cc", "-O2", "-shared", "-fPIC", f"-DFMI={fmi}", "-o", path, SOURCE, "-lm"]
     subprocess.run([*map(str, line)], check=True)
+    atexit.register(shutil.rmtree, path.parent)
     return path
 
 
@@ -164,20 +171,10 @@ def together(drive, s, command, times, start=(0.0,) * 4):
     # masses that are pressed together at first are let apart where they part, a step later
     state = np.array([start[0], start[1] or 1e-14, *start[2:], *np.zeros(len(drive.c))])
     while time < times[-1]:
-        done = solve_ivp(
-            rates,
-            (time, times[-1]),
-            state,
-            method="DOP853",
-            rtol=1e-11,
-            atol=1e-14,
-            events=ends,
-            t_eval=times[time + 1e-12 < times],
-            max_step=0.01,
-        )
-        rows |= dict(
-            zip(np.round(done.t, 9), np.reshape(done.y, (len(state), -1))[:2].T, strict=True)
-        )
+        asked = {"t_eval": times[time + 1e-12 < times], "events": ends, "max_step": 0.01}
+        done = solve_ivp(rates, (time, times[-1]), state, "DOP853", **asked, rtol=1e-11, atol=1e-14)
+        points = np.reshape(done.y, (len(state), -1))[:2].T
+        rows |= dict(zip(np.round(done.t, 9), points, strict=True))
         if done.status == 0:
             break
         far = int(not done.t_events[0].size)  # whether it is the other end of the play
