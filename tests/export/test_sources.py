@@ -14,20 +14,27 @@ from fmu_src.export.errors import CannotExport
 
 from ..fresh import ROOT
 
-PROGRAMS = Path(__file__).with_name("programs")
+IMPORTING = """
+import importlib, json, sys
+for name in sys.argv[1:]:
+    importlib.import_module(name)
+ours = [module for name, module in sys.modules.items() if name.split(".")[0] == "fmu_src"]
+print(json.dumps([module.__file__ for module in ours]))
+"""
 
 
-def told_by(program, *arguments):
-    """What a program with the project on its path prints."""
-    command = [sys.executable, str(PROGRAMS / program), *arguments]
+def imported_by(*modules):
+    """Files below ``fmu_src`` that a fresh process runs where it imports modules."""
+    command = [sys.executable, "-c", IMPORTING, *modules]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    return json.loads(done.stdout)
+    places = map(Path, json.loads(done.stdout))
+    return sorted(path.relative_to(ROOT / "fmu_src").as_posix() for path in places)
 
 
 @pytest.mark.parametrize("folder", forms.MODELS.values())
 def test_a_model_is_made_of_what_it_imports(folder):
-    ran = told_by("imported.py", f"fmu_src.models.{folder}.model")
+    ran = imported_by(f"fmu_src.models.{folder}.model")
     assert sorted(sources.model_sources(folder)) == ran
     kernels = {
         name.split("/")[1] for name in ran if name.startswith("kernels/") and "/" in name[8:]
@@ -37,7 +44,7 @@ def test_a_model_is_made_of_what_it_imports(folder):
 
 @pytest.mark.parametrize("folder", forms.MODELS.values())
 def test_the_embedded_package_is_made_of_what_it_imports(folder):
-    ran = told_by("imported.py", f"fmu_src.models.{folder}.model", "fmu_src.runtime.slave")
+    ran = imported_by(f"fmu_src.models.{folder}.model", "fmu_src.runtime.slave")
     assert sorted(pythonfmu_form.embedded_sources(folder)) == ran
 
 

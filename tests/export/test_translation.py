@@ -23,7 +23,6 @@ STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror"
 
 
 def library(folder, text, *flags):
-    """C as a loaded library; no warning is left."""
     (folder / "kernel.c").write_text(text, "utf-8")
     target = folder / f"kernel{'_'.join(flags)}.so"
     command = [CC, *STRICT, *flags, "-shared", "-fPIC", "kernel.c", "-o", target, "-lm"]
@@ -33,7 +32,6 @@ def library(folder, text, *flags):
 
 
 def module_of(folder, body):
-    """A module with one entry point of these lines."""
     text = "import math\nLIMIT = 2.0\n\n\ndef helper(m, x):\n    m[0] += x\n    return m[0]\n\n\n"
     text += "def entry(m, time):\n" + textwrap.indent(textwrap.dedent(body), "    ")
     path = folder / "outside.py"
@@ -77,7 +75,6 @@ def test_what_is_outside_the_subset_is_refused(tmp_path, body, line, text):
 
 
 def both(folder, body):
-    """An entry point in Python and in C."""
     if CC is None:
         pytest.skip("no C compiler on this machine")
     module, outside = module_of(folder, body), EXPORT.format(name="entry")

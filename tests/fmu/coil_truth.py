@@ -14,14 +14,8 @@ STATES = ("box_position", "box_velocity", "current", "energy")
 
 
 def polynomial(p, name, t):
-    """A cubic input and its first derivative."""
     a, b, c, d = (p[key] for key in (name, *(f"{name}_{i}" for i in (1, 2, 3))))
     return a + t * (b + t * (c / 2 + t * d / 6)), b + t * (c + t * d / 2)
-
-
-def limit_of(p, name):
-    """A limit, infinite where there is none."""
-    return p[name] or np.inf
 
 
 class Shaker:
@@ -31,19 +25,16 @@ class Shaker:
         self.p = {**DEFAULTS, **values}
         self.current_control = bool(self.p["current_control"])
         names = ("voltage_limit", "current_limit")
-        self.limit, self.other_limit = (
-            limit_of(self.p, name) for name in (names[::-1] if self.current_control else names)
-        )
+        limits = [self.p[name] or np.inf for name in names]  # 0: none
+        self.limit, self.other_limit = limits[::-1] if self.current_control else limits
         self.clipped, self.held = 0, 0
 
     def source(self, t):
-        """The command, clipped, and its derivative."""
         if self.clipped:
             return self.clipped * self.limit, 0.0
         return polynomial(self.p, "command", t)
 
     def electric(self, t, state):
-        """Current, its derivative, and voltage."""
         p, (_, v, i, *_) = self.p, state
         R, L, Bl = p["coil_resistance"], p["coil_inductance"], p["force_factor"]
         (source, slope), held = self.source(t), self.held * self.other_limit if self.held else 0.0
@@ -83,20 +74,15 @@ class Shaker:
 
     def events(self):
         """Functions of which one is zero where a limit begins or ends to act."""
-        found = []
+        found, other, both = [], self.other_limit, (1, -1)
         if np.isfinite(self.limit):
-            for side in (self.clipped,) if self.clipped else (1, -1):
-                found.append(
-                    ("command", side, lambda t, _, s=side: s * self.command(t) - self.limit)
-                )
-        if np.isfinite(self.other_limit):
-            if self.held:
-                found.append(("held", self.held, lambda t, s: self.held * self.excess(t, s)))
-            else:
-                for side in (1, -1):
-                    found.append(
-                        ("free", side, lambda t, s, k=side: k * self.other(t, s) - self.other_limit)
-                    )
+            clip = lambda k: lambda t, _: k * self.command(t) - self.limit  # noqa: E731
+            found += [("command", k, clip(k)) for k in ((self.clipped,) if self.clipped else both)]
+        if np.isfinite(other) and self.held:
+            found.append(("held", self.held, lambda t, s: self.held * self.excess(t, s)))
+        elif np.isfinite(other):
+            reach = lambda k: lambda t, s: k * self.other(t, s) - other  # noqa: E731
+            found += [("free", k, reach(k)) for k in both]
         return found
 
     def command(self, t):
@@ -111,7 +97,6 @@ class Shaker:
             state[3] += 0.5 * self.p["coil_inductance"] * self.source(t)[0] ** 2
 
     def hold(self, t, state):
-        """Decide whether the other quantity is held."""
         self.held, L = 0, self.p["coil_inductance"]
         if not np.isfinite(self.other_limit):
             return
@@ -129,42 +114,21 @@ class Shaker:
         """State at ``stop``; how often what acts changed is in ``changes``."""
         state, t, self.changes = np.array(state, float), start, 0
         while t < stop:
-            events, functions = self.events(), []
-            for kind, _, function in events:
-
-                def event(s, y, f=function):
-                    return f(s, y)
-
+            events = self.events()
+            for kind, _, event in events:
                 rising = kind == "free" or (kind == "command" and not self.clipped)
                 event.terminal, event.direction = True, 1 if rising else -1
-                functions.append(event)
-            found = solve_ivp(
-                self.right_hand_side,
-                (t, stop),
-                state,
-                method="DOP853",
-                rtol=1e-13,
-                atol=1e-15,
-                events=functions,
-            )
+            asked = {"events": [event for *_, event in events], "rtol": 1e-13, "atol": 1e-15}
+            found = solve_ivp(self.right_hand_side, (t, stop), state, "DOP853", **asked)
             t, state = found.t[-1], found.y[:, -1].copy()
             if found.status == 1:
                 self.changes += 1
-                self.change(events, found, t, state)
+                kind, side, _ = events[[bool(len(times)) for times in found.t_events].index(True)]
+                self.change(kind, side, t, state)
         return state
 
-    def change(self, events, found, t, state):
-        """Go through the event that ended an integration."""
-        (kind, side), L = (
-            next(
-                (
-                    event[:2]
-                    for event, times in zip(events, found.t_events, strict=True)
-                    if len(times)
-                )
-            ),
-            self.p["coil_inductance"],
-        )
+    def change(self, kind, side, t, state):
+        L = self.p["coil_inductance"]
         if kind == "free":
             self.held = side
             if L and not self.current_control:

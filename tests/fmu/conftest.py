@@ -11,12 +11,11 @@ from .driver import FMUS
 from .programs.driver import free_all
 
 FORMS = list(FMUS)
-NUMBERS = ("chattering", "energy", "forces", "guarantees", "importers", "motion", "outputs")
+NUMBERS = ("energy", "forces", "guarantees", "importers", "motion", "outputs")
 
 
 @pytest.fixture(scope="session", autouse=True)
 def forms(exported):
-    """All tests here need the FMUs."""
     return exported
 
 
@@ -38,13 +37,11 @@ def instances():
 
 @pytest.fixture(params=FORMS, scope="session")
 def fmu(request):
-    """Path of an exported FMU."""
     return FMUS[request.param]
 
 
 @pytest.fixture(params=FORMS)
 def form(request):
-    """Name of a form, for tests on several models."""
     return request.param
 
 

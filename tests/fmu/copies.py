@@ -11,8 +11,11 @@ from ..fresh import ROOT
 EXPORT = Path(__file__).with_name("programs") / "export_uncompiled.py"
 
 
-def copy_sources(folder, changes=()):
-    """The sources below ``folder``, with the changes of :func:`export_copy`."""
+def export_copy(folder, changes=(), model="TwoMassImpactOscillator", **environment):
+    """Path of the pythonfmu FMU of a copy of the sources in a folder.
+
+    Changes are a file below ``fmu_src``, text that stands there once, and what replaces it.
+    """
     ignored = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "fmu_src", folder / "fmu_src", ignore=ignored)
     for name, old, new in changes:
@@ -20,15 +23,6 @@ def copy_sources(folder, changes=()):
         text = path.read_text()
         assert text.count(old) == 1
         path.write_text(text.replace(old, new))
-    return folder
-
-
-def export_copy(folder, changes=(), model="TwoMassImpactOscillator", **environment):
-    """Path of the pythonfmu FMU of a copy of the sources in a folder.
-
-    Changes are a file below ``fmu_src``, text that stands there once, and what replaces it.
-    """
-    copy_sources(folder, changes)
     environment = {**os.environ, "PYTHONPATH": str(folder), **environment}
     command = [sys.executable, str(EXPORT), model]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment)

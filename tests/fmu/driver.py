@@ -17,7 +17,6 @@ FMUS = {form: BUILD / form / f"{OSCILLATOR}.fmu" for form in FORMS}
 
 
 def path_of(model, form):
-    """Path of an exported FMU."""
     return BUILD / form / f"{model}.fmu"
 
 

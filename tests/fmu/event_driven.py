@@ -14,7 +14,11 @@ CUBICS = {
     "box": ("box_acceleration", "box_jerk", "box_snap", "box_crackle"),
     **{half: (f"force{half}", *(f"force{half}_{k}" for k in (1, 2, 3))) for half in (1, 2)},
 }
-INPUTS = (*(name for names in CUBICS.values() for name in names),)
+ZERO = (  # unless given
+    *(name for names in CUBICS.values() for name in names),
+    *("clearance", "stroke", "phase_start", "v1_start", "v2_start"),
+    *("force1_amplitude", "force2_amplitude"),
+)
 TOLERANCE = 1e-12
 
 
@@ -26,18 +30,7 @@ class Motion:
     """
 
     def __init__(self, values, acceleration=None):
-        self.p = p = {
-            "clearance": 0.0,
-            "phase_start": 0.0,
-            "v1_start": 0.0,
-            "v2_start": 0.0,
-            "force1_amplitude": 0.0,
-            "force2_amplitude": 0.0,
-            "wall": False,
-            "stroke": 0.0,
-            **dict.fromkeys(INPUTS, 0.0),
-            **values,
-        }
+        self.p = p = {**dict.fromkeys(ZERO, 0.0), "wall": False, **values}
         self.since = dict.fromkeys(CUBICS, 0.0)  # when each cubic began
         self.phase, self.begun = p["phase_start"], 0.0  # of the harmonics, at that time
         self.share = (0.0, 1.0) if p["wall"] else (p["m1"], p["m2"])  # in what is common
@@ -102,7 +95,6 @@ class Motion:
         return c0 + s * (c1 + s * (c2 / 2.0 + s * c3 / 6.0))
 
     def box(self, t):
-        """Acceleration of the box."""
         p = self.p
         harmonic = p["box_amplitude"] * p["box_frequency"] ** 2 * self.harmonic(t)
         return self.acceleration(t) + self.cubic("box", t) - harmonic
@@ -139,10 +131,8 @@ class Motion:
 
     def integrate(self, field, stop, **more):
         """On to ``stop`` or to an event; whether there was one."""
-        done = solve_ivp(
-            *(field, (self.time, stop), self.state, "DOP853"),
-            **{"rtol": TOLERANCE, "atol": 1e-2 * TOLERANCE * self.size, **more},
-        )
+        more = {"rtol": TOLERANCE, "atol": 1e-2 * TOLERANCE * self.size, **more}
+        done = solve_ivp(field, (self.time, stop), self.state, "DOP853", **more)
         self.time, self.state = done.t[-1], done.y[:, -1]
         return done.status == 1
 
@@ -184,7 +174,6 @@ class Motion:
     release.terminal, release.direction = True, 1
 
     def strike(self):
-        """Newton's restitution, and the end of chattering."""
         p, (x1, v1, x2, v2) = self.p, self.state
         one, two = self.share
         face = (one * x1 + two * (x2 - self.apart)) / self.total

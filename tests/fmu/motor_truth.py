@@ -21,15 +21,10 @@ def right_hand_side(values):
             current = (p["voltage"] - K * w) / R
         f0, f1, f2, f3 = (p[f"box_force{order}"] for order in ("", "_1", "_2", "_3"))
         force = f0 + t * (f1 + t * (f2 / 2 + t * f3 / 6))
-        matrix = [
-            [p["box_mass"], unbalance * np.cos(phi)],
-            [unbalance * np.cos(phi), p["rotor_inertia"]],
-        ]
-        right = [
-            unbalance * w * w * np.sin(phi) - p["box_damping"] * v - p["box_stiffness"] * y + force,
-            K * current,
-        ]
-        a, b = np.linalg.solve(matrix, right)
+        coupled = unbalance * np.cos(phi)
+        matrix = [[p["box_mass"], coupled], [coupled, p["rotor_inertia"]]]
+        force += unbalance * w * w * np.sin(phi) - p["box_damping"] * v - p["box_stiffness"] * y
+        a, b = np.linalg.solve(matrix, [force, K * current])
         return [v, a, w, b, (p["voltage"] - R * current - K * w) / L if L else 0.0, K * current * w]
 
     return f
@@ -37,7 +32,5 @@ def right_hand_side(values):
 
 def solve(values, start, stop):
     """State at ``stop`` from ``start`` = (y, y', phi, phi', i) at 0, and the motor's work."""
-    found = solve_ivp(
-        right_hand_side(values), (0.0, stop), [*start, 0.0], method="DOP853", rtol=1e-13, atol=1e-15
-    )
-    return found.y[:, -1]
+    tight = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15}
+    return solve_ivp(right_hand_side(values), (0.0, stop), [*start, 0.0], **tight).y[:, -1]

@@ -20,7 +20,6 @@ PYTHON = FMUS["fmi2-python"]
 
 
 def contents(fmu):
-    """Files of an FMU by name."""
     with zipfile.ZipFile(fmu) as archive:
         return {name: archive.read(name) for name in archive.namelist()}
 
@@ -42,7 +41,6 @@ def test_documentation_is_inside(fmu):
 
 
 def table(data):
-    """Names and rows of a CSV file."""
     head, *lines = data.decode().split()
     return head.split(","), [[float(cell) for cell in line.split(",")] for line in lines]
 

@@ -8,13 +8,11 @@ import pytest
 from .driver import MODELS, path_of
 from .programs.driver import DISCARD, Refused, harmonic, open_fmu
 
+LIMITED = {"coil_inductance": 0.02, "current_limit": 1.0}
 EVALUATION_RUNS = {  # settings and a time that takes more evaluations than the limits below
     "TwoMassImpactOscillator": (harmonic(0.3), 40.0),
     "MotorShaker": ({"voltage": 6.0, "speed_start": 40.0}, 0.4),
-    "ElectrodynamicShaker": (
-        {"command": 9.0, "command_1": -4.0, "coil_inductance": 0.02, "current_limit": 1.0},
-        4.0,
-    ),
+    "ElectrodynamicShaker": ({**LIMITED, "command": 9.0, "command_1": -4.0}, 4.0),
 }
 models = pytest.mark.parametrize("model", MODELS)
 

@@ -19,34 +19,6 @@ def energy(m1, m2, k1, k2, x1, x2, v1, v2):
 
 
 @pytest.mark.parametrize(
-    "values",
-    [
-        {"m1": 1.0, "m2": 1.0, "k1": 1.0, "k2": 1.2, "e": 0.7},
-        {"m1": 0.3, "m2": 2.5, "k1": 1.7, "k2": 4.0, "e": 0.95, "clearance": 0.3},
-        # every impact begins a contact; nothing is lost
-        {"m1": 4.0, "m2": 1.5, "k1": 1.0, "k2": 2.0, "e": 0.0, "clearance": -0.3},
-        {"m1": 1.0, "m2": 3.0, "k1": 2.0, "k2": 1.0, "e": 1.0, "clearance": -0.3},
-        {"m1": 0.3, "m2": 2.5, "k1": 1.7, "k2": 4.0, "e": 0.98, "e_slope": 0.5},
-        {"m1": 0.3, "m2": 2.5, "k1": 1.7, "k2": 4.0, "e": 0.95, "wall": True},
-    ],
-    ids=lambda values: ",".join(f"{n}={v}" for n, v in values.items() if n[0] in "ecw"),
-)
-def test_energy_of_free_motion_is_lost_in_impacts_alone(fmu, values):
-    starts = {"x1_start": -0.5, "x2_start": 0.25, "v1_start": 1.0, "v2_start": -2.0}
-    if "wall" in values:
-        starts["x2_start"] = starts["v2_start"] = 0.0
-    f = open_fmu(fmu).start(box_amplitude=0.0, d1=0.0, d2=0.0, **starts, **values)
-    names = ("x1", "x2", "v1", "v2", "impact_energy", "impact_count")
-    found = np.array([f.get(*names), *(f.step(0.25 * k).get(*names) for k in range(1, 201))])
-    masses = [values[name] for name in ("m1", "m2", "k1", "k2")]
-    total = energy(*masses, *found[:, :4].T) + found[:, 4]
-    assert found[-1, 5] > 5
-    assert np.all(np.diff(found[:, 4]) >= 0.0)
-    assert (found[-1, 4] > 0.1 * total[0]) == (values["e"] < 1.0)
-    assert total == pytest.approx(total[0], rel=1e-12)
-
-
-@pytest.mark.parametrize(
     ("clearance", "gamma", "e_slope", "more"),
     [
         *((0.0, 1e-4, 0.0, {}), (0.2, 1e-4, 0.0, {}), (-0.2, 0.3, 0.0, {}), (0.0, 1e-4, 0.2, {})),
@@ -62,12 +34,12 @@ def test_energy_balance_of_driven_motion_closes(fmu, clearance, gamma, e_slope, 
     values = {"m1": 1.0, "m2": 1.5, "k1": 1.0, "k2": 1.4, "d1": 0.02, "d2": 0.03, "e": 0.7}
     values |= {"box_amplitude": 0.8, "box_frequency": 1.13}
     values |= {"clearance": clearance, "gamma": gamma, "e_slope": e_slope, **more}
-    end, instants = 100.0, {0.0, 100.0}
+    end, instants = 60.0, {0.0, 60.0}
     f = open_fmu(fmu).start(**values)
     while f.time < end:  # where to split the quadrature
         instants.add(f.step(f.time + 2.0**-8).one("impact_time"))
     # no two within a step: the quadrature knows them all
-    assert f.one("impact_count") == len(instants) - 2 > 15
+    assert f.one("impact_count") == len(instants) - 2 > 8
     f, samples = open_fmu(fmu).start(**values), []
     names = ("x1", "x2", "v1", "v2", "impact_energy")
     first = f.get(*names)
@@ -75,21 +47,17 @@ def test_energy_balance_of_driven_motion_closes(fmu, clearance, gamma, e_slope, 
     for a, b in itertools.pairwise(sorted(instants)):
         pieces = max(1, math.ceil((b - a) / 0.5))
         length = (b - a) / pieces
-        for k, (point, weight) in itertools.product(
-            range(pieces), zip(points, weights, strict=True)
-        ):
-            f.step(a + (k + 0.5 + 0.5 * point) * length)
-            samples.append([0.5 * weight * length, *f.get("v1", "v2", "phase")])
+        for k, i in itertools.product(range(pieces), range(len(points))):
+            f.step(a + (k + 0.5 + 0.5 * points[i]) * length)
+            samples.append([0.5 * weights[i] * length, *f.get("v1", "v2", "phase")])
     last = f.step(end).get(*names)
     masses = [values[name] for name in ("m1", "m2", "k1", "k2")]
     weight, v1, v2, phase = np.array(samples).T
     forcing = values["box_amplitude"] * values["box_frequency"] ** 2 * np.sin(phase)
-    forces = (
-        more.get(f"force{half}_amplitude", 0.0) * np.sin(phase) + more.get(f"force{half}", 0.0)
-        for half in (1, 2)
-    )
     work = np.sum(weight * (values["m1"] * v1 + values["m2"] * v2) * forcing)
-    work += sum(np.sum(weight * v * force) for v, force in zip((v1, v2), forces, strict=True))
+    for half, v in ((1, v1), (2, v2)):
+        constant, swing = (more.get(f"force{half}{end}", 0.0) for end in ("", "_amplitude"))
+        work += np.sum(weight * v * (constant + swing * np.sin(phase)))
     lost_in_dampers = np.sum(weight * (values["d1"] * v1**2 + values["d2"] * v2**2))
     assert lost_in_dampers > 0.1
     assert last[4] > 0.1

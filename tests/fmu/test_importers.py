@@ -2,7 +2,6 @@
 line, libcosim, fmuloader and ecos; and another checker reads it.
 """
 
-import itertools
 import subprocess
 import sys
 from importlib.util import find_spec
@@ -38,19 +37,6 @@ def test_simulate_fmu(fmu, reference):
     rows = np.array([found[name].astype(float) for name in ("time", *NAMES)]).T
     assert np.array_equal(rows, reference)
     assert reference[-1, -1] > 0.0
-
-
-def test_steps_that_differ_in_the_last_bits(fmu):
-    """A tenth of a second is no binary number, so the loop's steps differ from each other; no step
-    is refused and nothing adds up.
-    """
-    values, names = {"box_frequency": 2.0, "box_amplitude": 0.25}, ["x1", "v1", "x2", "v2", "phase"]
-    options = {"output_interval": 0.1, "stop_time": 200.0, "start_values": values}
-    rows = fmpy.simulate_fmu(str(fmu), output=names, **options)
-    assert len({b - a for a, b in itertools.pairwise(rows["time"])}) > 5
-    assert len(rows) == 2001
-    one = open_fmu(fmu).start(**values).step(float(rows["time"][-1])).get(*names)
-    assert [rows[name][-1] for name in names] == pytest.approx(one, abs=1e-11)
 
 
 @pytest.mark.parametrize("form", ["fmi2-python", "fmi2"])

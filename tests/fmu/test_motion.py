@@ -11,11 +11,9 @@ import pytest
 from tests import exact_motion as truth
 
 from ..kernels.oscillator.kernel import DEFAULTS
-from .event_driven import CONTACT, Motion
 from .programs.driver import open_fmu
 
 STATE = ("x1", "v1", "x2", "v2")
-CUBIC = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
 
 
 def structure(seed):
@@ -108,32 +106,13 @@ def test_phase_is_continuous_when_the_frequency_changes(fmu, damping):
         assert math.remainder(found - phase, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-11)
 
 
-@pytest.mark.parametrize("name", (*CUBIC, "box_amplitude"))
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_each_derivative_moves_masses_from_rest(fmu, name, sign):
-    """From rest at the touching point only the first derivative that does not vanish decides: apart
-    for +, pressed together for -; a harmonic motion of the box begins with its jerk.
-    """
-    values = {"box_amplitude": 0.0, name: sign}
-    expected = Motion({**DEFAULTS, "x1_start": 0.0, "x2_start": 0.0, **values}).run(1.0)
-    names = ("x1", "x2", "impact_count", "contact_count", "in_contact")
-    x1, x2, *found = open_fmu(fmu).start(**values).at(2.0**-10, 1.0).get(*names)
-    begins_apart = (sign > 0) == (name != "box_amplitude")
-    assert found == [0, 0, not begins_apart]
-    assert (len(expected.impacts), expected.mode == CONTACT) == (0, not begins_apart)
-    assert [x1, x2] == pytest.approx(expected.state[[0, 2]], rel=1e-7)
-
-
 def gap_of(x2, values, state, phase=0.0):
-    """Gap by Newton's law, the start of mass 2 displaced."""
-    first, second = truth.free_motion(
-        {**DEFAULTS, **values}, (state[0], state[1], x2, state[3]), mp.mpf(phase)
-    )
+    start = (state[0], state[1], x2, state[3])
+    first, second = truth.free_motion({**DEFAULTS, **values}, start, mp.mpf(phase))
     return second - first
 
 
 def first_minimum(gap):
-    """Time of the gap's first minimum after the start."""
     slope = gap.derivative()
     summit = float(truth.first_root(slope, 20.0)) + 1e-6 if slope(0) > 0 else 0.0
     return truth.first_root(-1 * slope, 20.0, summit)

@@ -22,7 +22,6 @@ def outputs_at(f, target):
 
 
 def begin(f, drawn):
-    """Begin a run; whether it can."""
     values = {**drawn.values, "evaluation_limit": LIMIT}
     try:
         f.reset().start(drawn.start_time, **{**values, "bonded": bool(values.get("bonded"))})

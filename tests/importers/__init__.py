@@ -61,7 +61,6 @@ def unpack_binary(fmu: Path, version: str, folder: Path, windows: bool = False) 
 
 
 def names_header(fmu: Path) -> str:
-    """Return the text of ``names.h``: an FMU's variables for the importer in C."""
     description = describe(fmu)
     rows, time = [], 0xFFFFFFFF
     for variable in description.variables.values():
@@ -81,7 +80,6 @@ def names_header(fmu: Path) -> str:
 
 
 def c_literal(text: str | None, otherwise: float) -> str:
-    """Return a number of the model description as a C literal."""
     value = otherwise if text is None else float(text)
     return repr(value).replace("inf", "INFINITY") if math.isinf(value) else value.hex()
 
@@ -123,12 +121,7 @@ def compile_importer(
 
 
 def rebuild_shim(
-    version: str,
-    folder: Path,
-    objects: Mapping[str, bytes],
-    options: Sequence[str] = SANITIZE,
-    model: str = "oscillator",
-    command: Sequence[str] | None = None,
+    version: str, folder: Path, objects: Mapping[str, bytes], options: Sequence[str], model: str
 ) -> Path:
     """Compile an FMU's binary from its own sources with other options; return its path."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -141,7 +134,7 @@ def rebuild_shim(
     target = folder / "rebuilt.so"
     fixed = ("-shared", "-fPIC", "-fvisibility=hidden", "-g", "-O1", "-ffp-contract=off")
     parts = [name for name in native_form.shim_sources(version) if name.endswith(".c")]
-    command = [*(command or c_compiler()), *fixed, *options, "-o", target, *parts, "kernel.o"]
+    command = [*(c_compiler() or ["cc"]), *fixed, *options, "-o", target, *parts, "kernel.o"]
     run_compiler(command, folder)
     return target
 
@@ -152,7 +145,6 @@ def settings(values: Mapping[str, float]) -> list[str]:
 
 
 def read_rows(text: str) -> list[list[float]]:
-    """Return the rows of numbers that ``simulate`` printed."""
     lines = (line.split() for line in text.splitlines() if not line.startswith("CHECKS"))
     return [[float.fromhex(cell) for cell in line] for line in lines]
 
@@ -194,6 +186,12 @@ class Importer:
         """Return outputs at each of ``times``; the first one is the start."""
         done = self.run("simulate", ",".join(names), *settings(values), under=under, times=times)
         return read_rows(done.stdout)
+
+
+def importer(version: str, fmu: Path, folder: Path) -> Importer:
+    """Compile the importer of an FMU; return it with the FMU's own binary."""
+    program = compile_importer(version, fmu, folder / "importer")
+    return Importer(program, unpack_binary(fmu, version, folder), version)
 
 
 def kernel_objects(model: str, sanitizer: Sequence[str] = ()) -> dict[str, bytes]:

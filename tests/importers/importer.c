@@ -114,13 +114,6 @@ size_t fmu_save(void *instance, char **bytes) {
     return size;
 }
 
-bool fmu_restore(void *instance, const char *bytes, size_t size) {
-    State state = NULL;
-    bool taken = deserialize(instance, bytes, size, &state) == FMI_OK && set_state(instance, state) == FMI_OK;
-    must(free_state(instance, &state));
-    return taken;
-}
-
 void fmu_close(void *instance) {
     fmi.Terminate(instance); /* refused before initialisation, which is no matter here */
     fmi.FreeInstance(instance);

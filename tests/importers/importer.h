@@ -79,7 +79,6 @@ double fmu_get(void *instance, const Name *variable);
 void fmu_initialize(void *instance, double start);
 void fmu_step(void *instance, double time, double size);
 size_t fmu_save(void *instance, char **bytes);                        /* to be freed */
-bool fmu_restore(void *instance, const char *bytes, size_t size);     /* false where the FMU refuses */
 void fmu_close(void *instance);
 
 #endif

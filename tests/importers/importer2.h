@@ -33,9 +33,6 @@ static inline Status get_integers(Instance c, const unsigned *r, size_t count, I
 static inline Status set_integers(Instance c, const unsigned *r, size_t count, const Integer *x) { return fmi.SetInteger(c, r, count, x); }
 static inline Status get_booleans(Instance c, const unsigned *r, size_t count, Boolean *x) { return fmi.GetBoolean(c, r, count, x); }
 static inline Status set_booleans(Instance c, const unsigned *r, size_t count, const Boolean *x) { return fmi.SetBoolean(c, r, count, x); }
-static inline Status get_derivatives(Instance c, const unsigned *r, size_t count, const Integer *orders, double *x) {
-    return fmi.GetRealOutputDerivatives(c, r, count, orders, x);
-}
 
 static inline Status get_state(Instance c, State *state) { return fmi.GetFMUstate(c, state); }
 static inline Status set_state(Instance c, State state) { return fmi.SetFMUstate(c, state); }

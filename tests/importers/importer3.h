@@ -41,9 +41,6 @@ static inline Status get_integers(Instance c, const unsigned *r, size_t count, I
 static inline Status set_integers(Instance c, const unsigned *r, size_t count, const Integer *x) { return fmi.SetInt32(c, r, count, x, count); }
 static inline Status get_booleans(Instance c, const unsigned *r, size_t count, Boolean *x) { return fmi.GetBoolean(c, r, count, x, count); }
 static inline Status set_booleans(Instance c, const unsigned *r, size_t count, const Boolean *x) { return fmi.SetBoolean(c, r, count, x, count); }
-static inline Status get_derivatives(Instance c, const unsigned *r, size_t count, const Integer *orders, double *x) {
-    return fmi.GetOutputDerivatives(c, r, count, orders, x, count);
-}
 
 static inline Status get_state(Instance c, State *state) { return fmi.GetFMUState(c, state); }
 static inline Status set_state(Instance c, State state) { return fmi.SetFMUState(c, state); }

@@ -51,7 +51,6 @@ DERIVED = {
 
 
 def saved(model, values, times):
-    """Memories of a run at points of time."""
     m = [0.0] * model.memory_size
     for variable in model.variables:
         if not variable.calculated:

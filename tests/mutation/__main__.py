@@ -33,7 +33,6 @@ COLUMNS = ("line", "broken", "outcome", "tests", "by")
 
 
 def loaded(file):
-    """The module of a source file."""
     return importlib.import_module(file.removesuffix(".py").replace("/", "."))
 
 
@@ -85,7 +84,6 @@ def digest(tests):
 
 
 def rows_of(table):
-    """The rows of a table by their breakage."""
     if not table.exists():
         return {}
     with table.open(newline="") as file:

@@ -21,7 +21,6 @@ class Breakage(NamedTuple):
 
 
 def breakages(source):
-    """Return all breakages of a module, in its order."""
     return sorted(one for one in changes(source) if is_whole(one.source))
 
 
@@ -69,7 +68,6 @@ def edits_of(node, source):
 
 
 def numbers(value, text):
-    """A number times 1.5 and over 1.5."""
     if isinstance(value, int):
         return str(max(value + 1, int(1.5 * value))), str(min(value - 1, int(value / 1.5)))
     return f"({text} * 1.5)", f"({text} / 1.5)"

@@ -11,7 +11,6 @@ VALUES = (int, float, str, tuple, dict, set, frozenset, slice, range, np.ndarray
 
 
 def codes(source):
-    """Code of all functions in a source, by qualified name."""
     waiting, found = [compile(source, "source", "exec")], {}
     while waiting:
         inner = [one for one in waiting.pop().co_consts if isinstance(one, types.CodeType)]

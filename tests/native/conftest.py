@@ -20,14 +20,12 @@ def cannot(reason):
     """Skip where the tools are missing; where they are there and fail, so does the test."""
     if importlib.util.find_spec("ziglang") is None:
         pytest.skip(f"ziglang missing: {reason}")
-    pytest.fail(
-        f"a new version of ziglang breaks the way the native FMUs are made: {reason}", pytrace=False
-    )
+    text = "a new version of ziglang breaks the way the native FMUs are made"
+    pytest.fail(f"{text}: {reason}", pytrace=False)
 
 
 @pytest.fixture(scope="session")
 def fmus(exported):
-    """Paths of the FMUs by form."""
     paths = {form: exported / form / "TwoMassImpactOscillator.fmu" for form in FORMS}
     if not all(guid_inside(path) for path in paths.values()):
         cannot(next(iter(refresh(exported).values()), "no reason given"))
@@ -43,11 +41,8 @@ def hide(monkeypatch):
 
     def away(*names):
         if "ziglang" in names:
-            monkeypatch.setattr(
-                compiler,
-                "importlib",
-                SimpleNamespace(util=SimpleNamespace(find_spec=lambda _: None)),
-            )
+            util = SimpleNamespace(find_spec=lambda _: None)
+            monkeypatch.setattr(compiler, "importlib", SimpleNamespace(util=util))
         if "own" in names:
             monkeypatch.setattr(compiler, "shutil", SimpleNamespace(which=lambda _: None))
 
@@ -67,19 +62,20 @@ def importer_of(fmus, tmp_path_factory):
             pytest.skip("there is no C compiler")
         if version not in made:
             folder = tmp_path_factory.mktemp(version)
-            program = importers.compile_importer(version, fmus[version], folder)
-            made[version] = importers.Importer(
-                program, importers.unpack_binary(fmus[version], version, folder), version
-            )
+            made[version] = importers.importer(version, fmus[version], folder)
         return made[version]
 
     return make
 
 
 @pytest.fixture(params=VERSIONS)
-def importer(request, importer_of):
-    """The importer of each FMI version."""
-    return importer_of(request.param)
+def version(request):
+    return request.param
+
+
+@pytest.fixture
+def importer(version, importer_of):
+    return importer_of(version)
 
 
 @pytest.fixture(autouse=True)

@@ -14,7 +14,6 @@ FIXED = r"\.(data\.rel\.ro|dynamic|got|relro_padding|init_array|fini_array)"
 
 
 def objdump(option, path):
-    """What it prints with an option."""
     done = subprocess.run(["objdump", option, path], capture_output=True, text=True, check=True)
     return done.stdout
 

@@ -7,7 +7,6 @@ import re
 import shutil
 import zipfile
 from importlib.util import find_spec
-from pathlib import Path
 
 import pytest
 
@@ -28,19 +27,7 @@ LOADER = {
     *("__cxa_finalize", "__gmon_start__", "__stack_chk_fail"),
     *("_ITM_deregisterTMCloneTable", "_ITM_registerTMCloneTable"),
 }
-WINE = next(
-    (
-        path
-        for path in (shutil.which("wine64"), shutil.which("wine"), "/usr/lib/wine/wine64")
-        if path and Path(path).exists()
-    ),
-    None,
-)
-
-
-@pytest.fixture(params=["fmi2", "fmi3"])
-def version(request):
-    return request.param
+WINE = next(filter(None, map(shutil.which, ("wine64", "wine", "/usr/lib/wine/wine64"))), None)
 
 
 @needs_objdump
@@ -70,10 +57,8 @@ def test_windows_binary_exports_fmi_and_imports_the_system(fmus, version, tmp_pa
             pytest.skip("this FMU was made without ziglang")
     pe = Pe(importers.unpack_binary(fmus[version], version, tmp_path, windows=True))
     assert pe.exports == set(functions_of_header(version))
-    for library in pe.imports:
-        assert re.fullmatch(
-            r"(?i)kernel32\.dll|api-ms-win-crt-[a-z]+-l1-1-0\.dll|ucrtbase\.dll", library
-        )
+    system = r"(?i)kernel32\.dll|api-ms-win-crt-[a-z]+-l1-1-0\.dll|ucrtbase\.dll"
+    assert all(re.fullmatch(system, library) for library in pe.imports)
     assert not [name for names in pe.imports.values() for name in names if "fma" in name.lower()]
 
 
@@ -85,14 +70,10 @@ def test_windows_binary_has_the_same_bits(fmus, importer_of, version, tmp_path):
     if command is None:
         pytest.skip("the importer for Windows is compiled by ziglang")
     program = importers.compile_importer(version, fmus[version], tmp_path / "importer", command)
-    windows = importers.Importer(
-        program, importers.unpack_binary(fmus[version], version, tmp_path, windows=True), version
-    )
-    wine = {
-        "env": {**os.environ, "WINEPREFIX": str(tmp_path / "prefix"), "WINEDEBUG": "-all"},
-        "under": (WINE,),
-        "timeout": 600,
-    }
+    library = importers.unpack_binary(fmus[version], version, tmp_path, windows=True)
+    windows = importers.Importer(program, library, version)
+    prefix = {**os.environ, "WINEPREFIX": str(tmp_path / "prefix"), "WINEDEBUG": "-all"}
+    wine = {"env": prefix, "under": (WINE,), "timeout": 600}
     settings = importers.settings(harmonic(1.13))
     times = [16.0 * k for k in range(257)]
     told = windows.run("simulate", ",".join(COMMON), *settings, times=times, **wine).stdout
@@ -101,13 +82,6 @@ def test_windows_binary_has_the_same_bits(fmus, importer_of, version, tmp_path):
     assert found[-1][COMMON.index("impact_count")] > 500
     windows.run("many", 200, 40, 0, **wine)
     windows.run("random", 7, 300, **wine)
-
-
-WINDOWS = b"""
-__declspec(dllexport) int print(char *text, double value) {
-    return snprintf(text, 32, "%.17g", value);
-}
-"""
 
 
 @needs_objdump
@@ -128,7 +102,9 @@ def test_the_compiler_s_first_error_is_one_line():
 @needs_objdump
 @pytest.mark.skipif(find_spec("ziglang") is None, reason="ziglang is not installed")
 def test_windows_libraries_need_no_c_library_compiled_first(tmp_path):
-    """A minute of a fresh machine: what they import is the system's own."""
-    files = {"one.c": b"#include <stdio.h>\n" + WINDOWS}
+    body = (
+        b'__declspec(dllexport) int print(char *t, double x) { return snprintf(t, 32, "%g", x); }'
+    )
+    files = {"one.c": b"#include <stdio.h>\n" + body}
     (tmp_path / "one.dll").write_bytes(compiler.link("x86_64-windows", "one", files))
     assert set(Pe(tmp_path / "one.dll").imports) == {"api-ms-win-crt-stdio-l1-1-0.dll"}

@@ -24,24 +24,14 @@ def test_same_bits_in_every_form(fmus, tmp_path, eta):
     nothing in common.
     """
     values, end = {**harmonic(eta), "e": 0.7, "d1": 0.01, "d2": 0.01}, 6144.0
-    forms = {
-        "pure Python": run(fmus["fmi2-python"], tmp_path / "pure", end, 64, values, pure=True),
-        "compiled": run(fmus["fmi2-python"], tmp_path / "compiled", end, 64, values),
-        "fmi2": run(fmus["fmi2"], tmp_path / "fmi2", end, 64, values),
-        "fmi3": run(fmus["fmi3"], tmp_path / "fmi3", end, 64, values),
-    }
-    compiled = {
-        name: any("kernel-" in path for path in form.pop("mapped")) for name, form in forms.items()
-    }
-    assert compiled == {"pure Python": False, "compiled": True, "fmi2": False, "fmi3": False}
-    reference = forms.pop("pure Python")["rows"]
-    assert float.fromhex(reference[-1][COMMON.index("impact_count")]) > 1000
-    for name, form in forms.items():
-        for k, (row, expected) in enumerate(zip(form["rows"], reference, strict=True)):
-            different = [
-                output for output, a, b in zip(COMMON, row, expected, strict=True) if a != b
-            ]
-            assert not different, f"{name}, step {k}"
+    pure = run(fmus["fmi2-python"], tmp_path / "pure", end, 64, values, pure=True)
+    forms = {form: run(fmus[form], tmp_path / form, end, 64, values) for form in fmus}
+    compiled = [any("kernel-" in path for path in one["mapped"]) for one in (pure, *forms.values())]
+    assert list(forms) == ["fmi2-python", "fmi2", "fmi3"]
+    assert compiled == [False, True, False, False]
+    assert float.fromhex(pure["rows"][-1][COMMON.index("impact_count")]) > 1000
+    for form, found in forms.items():
+        assert found["rows"] == pure["rows"], form
 
 
 def test_a_state_saved_by_one_native_form_goes_on_in_the_other(fmus):
@@ -54,5 +44,3 @@ def test_a_state_saved_by_one_native_form_goes_on_in_the_other(fmus):
     for one in (second, third):
         one.step(1024.0)
     assert third.get(*COMMON) == second.get(*COMMON)
-    second.free()
-    third.free()

@@ -10,15 +10,7 @@ from ..fmu.programs.driver import STATE, harmonic, open_fmu
 
 CHAOS = harmonic(1.13)
 EARLY = {"event_mode": True, "early_return": True}
-REGIMES = pytest.mark.parametrize(
-    ("values", "end"),
-    [
-        (CHAOS, 512.0),
-        ({}, 256.0),
-        ({**harmonic(0.8), "e": 0.3, "m1": 0.3, "k1": 1.7, "d1": 0.0}, 256.0),
-    ],
-    ids=["chaos", "defaults", "contacts"],
-)
+CONTACTS = {**harmonic(0.8), "e": 0.3, "m1": 0.3, "k1": 1.7, "d1": 0.0}
 
 
 def collect(fmu, end, size=8.0):
@@ -43,7 +35,7 @@ def collect(fmu, end, size=8.0):
     return times
 
 
-@REGIMES
+@pytest.mark.parametrize(("values", "end"), [(CHAOS, 512.0), ({}, 256.0), (CONTACTS, 256.0)])
 def test_times_by_the_clock_are_impact_times_of_small_steps(fmus, values, end):
     with open_fmu(fmus["fmi3"], **EARLY) as fmu:
         fmu.start(**values)
@@ -125,14 +117,8 @@ def test_time_does_not_run_backwards_next_to_an_impact(fmus, scale):
     """Communication points a few units in the last place around each impact: every step ends at or
     after its beginning.
     """
-    values = {
-        **CHAOS,
-        "k1": scale**2,
-        "k2": 1.2 * scale**2,
-        "box_frequency": 1.13 * scale,
-        "d1": 0.01 * scale,
-        "d2": 0.01 * scale,
-    }
+    values = {**CHAOS, "k1": scale**2, "k2": 1.2 * scale**2, "box_frequency": 1.13 * scale}
+    values |= {"d1": 0.01 * scale, "d2": 0.01 * scale}
     with open_fmu(fmus["fmi3"], **EARLY) as fmu:
         fmu.start(0.1, **values)
         times = []
@@ -150,8 +136,7 @@ def test_time_does_not_run_backwards_next_to_an_impact(fmus, scale):
                     while fmu.time < target:
                         before = fmu.time
                         event, early = fmu.go(target)
+                        assert fmu.time > before or event or not early
                         assert fmu.time >= before
                         seen += [fmu.one("impact_time")] * event
-                        if early and fmu.time == before and not event:
-                            raise AssertionError("a step that went nowhere without an event")
             assert seen == times

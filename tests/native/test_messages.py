@@ -8,29 +8,17 @@ import pytest
 from fmpy import fmi2, fmi3
 
 from ..fmu.driver import MODELS, path_of
-from ..fmu.programs.driver import (
-    LOGGER,
-    Fmu2,
-    allocation,
-    callbacks,
-    describe,
-    harmonic,
-    hear,
-    messages,
-    open_fmu,
-)
-from .conftest import VERSIONS
+from ..fmu.programs import driver
+from ..fmu.programs.driver import Fmu2, callbacks, describe, harmonic, hear, messages, open_fmu
 
 OTHER = "{00000000-0000-0000-0000-000000000000}"
 KINDS = {  # classes of FMPy by FMI version
     "fmi2": {"co-simulation": fmi2.FMU2Slave, "model exchange": fmi2.FMU2Model},
     "fmi3": {"co-simulation": fmi3.FMU3Slave, "model exchange": fmi3.FMU3Model},
 }
-versions = pytest.mark.parametrize("version", VERSIONS)
 
 
 def bare(path, version, token, kind="co-simulation"):
-    """FMPy's object for an FMU, not instantiated."""
     found = describe(path)
     return KINDS[version][kind](
         guid=token,
@@ -50,7 +38,6 @@ def refusal(path, version, token, kind):
     return message
 
 
-@versions
 def test_another_token_is_shown_beside_the_fmus_own(fmus, version):
     message = refusal(fmus[version], version, OTHER, "co-simulation")
     assert describe(fmus[version]).guid in message and OTHER in message
@@ -63,7 +50,7 @@ def test_a_message_needs_no_arguments(exported, model):
     """Importers that show the format as it is, and those that fill it in, show the same text."""
     path = path_of(model, "fmi2")
     raw = fmi2.fmi2CallbackFunctions()  # no proxy: the format itself arrives
-    raw.logger, raw.allocateMemory, raw.freeMemory = LOGGER, *allocation()
+    raw.logger, raw.allocateMemory, raw.freeMemory = driver.LOGGER, *driver.allocation()
     fmu, variable = bare(path, "fmi2", describe(path).guid), describe(path).modelVariables[0]
     fmu.instantiate(callbacks=raw)
     messages.clear()
@@ -75,7 +62,6 @@ def test_a_message_needs_no_arguments(exported, model):
     assert text.count("%") % 2 == 0
 
 
-@versions
 def test_a_state_freed_by_its_handle_frees_nothing(fmus, version):
     """What fmusim 0.0.39 does: the handle where the standard has a pointer to it."""
     with open_fmu(fmus[version]) as fmu:

@@ -34,13 +34,8 @@ def test_an_importer_that_knows_real_alone_runs_a_plain_form(plain, fmus, versio
     assert validate_fmu(str(plain)) == []
     with open_fmu(plain) as fmu, open_fmu(fmus[version]) as full:
         inputs = [v.name for v in fmu.variables.values() if v.causality == "input"]
-        assert inputs == [
-            *CUBICS["box"],
-            "force1_amplitude",
-            "force2_amplitude",
-            *CUBICS[1],
-            *CUBICS[2],
-        ]
+        amplitudes = ("force1_amplitude", "force2_amplitude")
+        assert inputs == [*CUBICS["box"], *amplitudes, *CUBICS[1], *CUBICS[2]]
         for name in ("box_amplitude", "box_frequency"):
             kind = fmu.variables[name]
             assert (kind.causality, kind.variability) == ("parameter", "tunable")

@@ -25,23 +25,16 @@ OF_A_STEP = {"sqrt", "fabs", "memcpy", "memset", "memmove"}
 
 
 def needs(*programs):
-    """Skip where a program is missing."""
     absent = sources.missing_programs(*programs)
     return pytest.mark.skipif(bool(absent), reason=f"expected {', '.join(absent)} on this machine")
 
 
 @pytest.fixture(scope="module")
 def folders(exported, fmus, tmp_path_factory):
-    """The unpacked ``sources/`` by FMI version and model."""
     assert fmus
     place = tmp_path_factory.mktemp("sources")
-    return {
-        (version, model): sources.unpack(
-            exported / version / f"{model}.fmu", place / version / model
-        )
-        for version in VERSIONS
-        for model in MODELS
-    }
+    fmu = lambda version, model: exported / version / f"{model}.fmu"  # noqa: E731
+    return {(v, m): sources.unpack(fmu(v, m), place / v / m) for v, m in PAIRS}
 
 
 @needs("gcc")
@@ -69,21 +62,17 @@ def test_no_function_calls_itself_and_a_step_nothing_that_allocates_waits_or_wri
         assert graph.stack_bytes(name) < 32768
     assert graph.library_functions(f"{version}DoStep", footprint.MESSAGES) <= OF_A_STEP
     everything = set().union(*(graph.library_functions(name) for name in graph.sizes))
-    assert {name.removeprefix("__builtin_") for name in everything} <= {
-        *LIBRARY,
-        footprint.INDIRECT,
-    }
+    plain = {name.removeprefix("__builtin_") for name in everything}
+    assert plain <= {*LIBRARY, footprint.INDIRECT}
 
 
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("version", VERSIONS)
-def test_no_compiler_warns(folders, version, model):
-    """Without optimisation, which takes a moment; with it in the slow test."""
+@pytest.mark.parametrize("pair", PAIRS, ids="-".join)
+def test_no_compiler_warns(folders, pair):
     compilers = [name for name in ("gcc", "clang") if not sources.missing_programs(name)]
     if not compilers:
         pytest.skip("expected gcc or clang on this machine")
     for compiler in compilers:
-        files = sources.c_files(folders[version, model])
+        files = sources.c_files(folders[pair])
         sources.run_command(compiler, *WARNINGS, "-fsyntax-only", *files)
 
 
@@ -135,7 +124,6 @@ def test_the_manual_states_the_memory(folders, tmp_path):
 
 
 def same_motion(one, other):
-    """Whether impacts, hash and last state agree."""
     return all(one[key] == other[key] for key in ("impacts", "hash", "x1", "x2", "v1", "v2"))
 
 

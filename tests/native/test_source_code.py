@@ -30,7 +30,6 @@ pytestmark = pytest.mark.skipif(
 
 
 def unpacked(fmu, folder):
-    """The FMU's files without its binaries."""
     with zipfile.ZipFile(fmu) as archive:
         archive.extractall(folder)
     shutil.rmtree(folder / "binaries")

@@ -23,7 +23,6 @@ def unpack(fmu: str | PathLike[str], folder: Path) -> Path:
 
 
 def c_files(sources: Path) -> list[Path]:
-    """Return the paths of an FMU's C files that are compiled."""
     return sorted(sources.glob("*.c"))
 
 

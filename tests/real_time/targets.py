@@ -18,7 +18,6 @@ BOARD = ("-M", "mps2-an500", "-nographic", "-semihosting-config", "enable=on,tar
 
 
 def parse_output(text: str) -> dict[str, str]:
-    """Return the values that the program printed, by name."""
     return dict(line.split(maxsplit=1) for line in text.splitlines())
 
 

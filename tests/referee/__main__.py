@@ -168,7 +168,6 @@ def undecided(answers: Sequence[Answer]) -> tuple[int, int]:
 
 
 def compare(group: str, before: Sequence[Answer], after: Sequence[Answer]) -> bool:
-    """Print how a group's answers differ; return whether they do."""
     numeric, words, anew = Counter[str](), Counter[tuple[str, str, str]](), 0
     size: dict[str, float] = {}
     for one, other in zip(before, after, strict=True):

@@ -15,15 +15,13 @@ import orchestrate as o
 from .. import draws
 
 SLOW = ("border", "detect", "detect_all", "fit", "couple_all", "jump_voltages")  # 1 s or more
-NOT_COMPARED = (
-    "channels",
-    "plot",
-    "report",
-    "to_dataframe",
-    "write_ssp",
-)  # they draw and write: nothing is computed
-SHORT: dict[str, Any] = {"transient": 50, "samples": 60}  # of fewer no repetition is decided
-FAST: dict[str, Any] = {"rate": 4e-4, "back": False, "settle": 50.0, "step": 0.2}
+# they draw and write: nothing is computed
+NOT_COMPARED = ("channels", "plot", "report", "to_dataframe", "write_ssp")
+QUIET: dict[str, Any] = {"progress": False, "jobs": 1}
+BRIEF: dict[str, Any] = {"transient": 50, **QUIET}
+SHORT: dict[str, Any] = {"samples": 60, **BRIEF}  # of fewer no repetition is decided
+QUICK: dict[str, Any] = {"back": False, "step": 0.2, **QUIET}
+FAST: dict[str, Any] = {"rate": 4e-4, "settle": 50.0, **QUICK}
 PAPER = {"6": (0.7, 0.005), "10": (0.7, 0.05), "11": (0.3, 0.005)}  # e and D of its sweeps
 Ask = Callable[["Draw"], xr.Dataset]
 
@@ -39,6 +37,9 @@ class Draw:
         self.frequency = self.near * self.structure.omega
         self.system = draws.System(o.Structure.from_file("quick"), o.Drive.from_file("quick"))
         self.ends = (lambda low: (low, low + 0.03))(float(rng.uniform(1.2, 1.6)))
+
+    def volts(self) -> float:
+        return self.ends[0] * float(self.system.drive.volts(self.system.structure))
 
     def halves(self) -> o.Structure:
         """Draw two halves, as of a beam in the laboratory."""
@@ -103,7 +104,6 @@ def ask_border(q: Draw) -> xr.Dataset:
 
 
 def ask_plan(q: Draw) -> xr.Dataset:
-    """Plan the test of a beam."""
     sensor = o.Sensor(bandwidth=400.0, noise=0.004, range=60.0)
     return o.plan_test(q.halves(), sensor=sensor, levels=[0.4, 10.0], **QUIET)
 
@@ -115,51 +115,39 @@ def ask_halves(q: Draw) -> xr.Dataset:
     return o.halves(*(o.shake(apart, one, sample_rate=2000.0, **QUIET) for one in knocks))
 
 
-QUIET: dict[str, Any] = {"progress": False, "jobs": 1}
 GUESS = o.Structure.from_halves(m1=1.5, m2=1.2, f1=31.5, f2=36.5, zeta1=0.03, zeta2=0.015, e=0.6)
 PLANE: dict[str, Any] = {"y": ("v_rel", -1.0, 1.0, 10), "transient": 50, "longest": 500, **QUIET}
 
 
 def passage(q: Draw) -> xr.Dataset:
-    """Run a drive up at full resolution."""
-    return o.passage(*q.system, voltage=q.ends, **FAST, **QUIET)
+    return o.passage(*q.system, voltage=q.ends, **FAST)
 
 
 def basin(q: Draw) -> xr.Dataset:
-    """Compute a small basin."""
     return o.basin(q.structure, eta=q.eta, x=("x_rel", 0.0, 1.0, 10), **PLANE)
 
 
 QUESTIONS: dict[str, Ask] = {
     "simulate": lambda q: o.simulate(q.structure, eta=q.eta, periods=9, points=20, **QUIET),
-    "sweep": lambda q: o.sweep(q.structure, eta=q.near, **SHORT, direction="both", **QUIET),
-    "resonance": lambda q: o.resonance(
-        q.structure, frequency=q.frequency, amplitude=0.5, **SHORT, **QUIET
-    ),
+    "sweep": lambda q: o.sweep(q.structure, eta=q.near, **SHORT, direction="both"),
+    "resonance": lambda q: o.resonance(q.structure, frequency=q.frequency, amplitude=0.5, **SHORT),
     "resonance_levels": lambda q: o.resonance_levels(
-        q.structure, frequency=q.frequency, level=[0.1, 5.0], **SHORT, **QUIET
+        q.structure, frequency=q.frequency, level=[0.1, 5.0], **SHORT
     ),
     "contact_threshold": lambda q: o.contact_threshold(
         q.structure.replace(clearance=-0.1), eta=q.near
     ),
-    "map": lambda q: o.map(q.structure, eta=q.near, e=[0.3, 0.7], **SHORT, **QUIET),
-    "lyapunov": lambda q: o.lyapunov(q.structure, eta=q.near, transient=50, periods=200, **QUIET),
-    "attractors": lambda q: o.attractors(q.structure, eta=q.eta, starts=5, transient=50, **QUIET),
+    "map": lambda q: o.map(q.structure, eta=q.near, e=[0.3, 0.7], **SHORT),
+    "lyapunov": lambda q: o.lyapunov(q.structure, eta=q.near, periods=200, **BRIEF),
+    "attractors": lambda q: o.attractors(q.structure, eta=q.eta, starts=5, **BRIEF),
     "basin": basin,
     "basin_entropy": lambda q: o.basin_entropy(basin(q), box=2),
     "impact_statistics": lambda q: o.impact_statistics(
-        q.structure, eta=q.near, transient=50, periods=50, **QUIET
+        q.structure, eta=q.near, periods=50, **BRIEF
     ),
-    "spectra": lambda q: o.spectra(
-        q.structure, eta=q.near, periods=4, points=128, transient=50, **QUIET
-    ),
+    "spectra": lambda q: o.spectra(q.structure, eta=q.near, periods=4, points=128, **BRIEF),
     "poincare": lambda q: o.poincare(
-        q.structure,
-        eta=q.eta,
-        transient=50,
-        periods=50,
-        at=str(q.rng.choice(["phase", "impacts"])),
-        **QUIET,
+        q.structure, eta=q.eta, periods=50, at=str(q.rng.choice(["phase", "impacts"])), **BRIEF
     ),
     "orbit": lambda q: o.orbit(q.structure, eta=q.eta, **QUIET),
     "manifold": lambda q: o.manifold(
@@ -190,16 +178,10 @@ QUESTIONS: dict[str, Ask] = {
     "plan_test": ask_plan,
     "halves": ask_halves,
     "cosimulate": lambda q: o.cosimulate(
-        *q.system,
-        inputs={"voltage": q.ends[0] * q.system.drive.volts(q.system.structure)},
-        duration=10.0,
-        step=0.1,
-        **QUIET,
+        *q.system, inputs={"voltage": q.volts()}, duration=10.0, step=0.1, **QUIET
     ),
-    "couple": lambda q: o.couple(*q.system, voltage=q.ends, **FAST, **QUIET),
-    "couple_all": lambda q: o.couple_all(
-        {"one": q.system}, eta0=q.ends, rates=[4e-4], back=False, step=0.2, **QUIET
-    ),
+    "couple": lambda q: o.couple(*q.system, voltage=q.ends, **FAST),
+    "couple_all": lambda q: o.couple_all({"one": q.system}, eta0=q.ends, rates=[4e-4], **QUICK),
     "record_of_run": lambda q: o.record_of_run(passage(q)),
     "passage": passage,
     "waterfall": lambda q: o.waterfall(passage(q), revolutions=4),
@@ -207,7 +189,7 @@ QUESTIONS: dict[str, Ask] = {
         *q.system, voltage=q.ends, count=2, tolerance=0.01, time=200.0, step=0.2, **QUIET
     ),
     "jump_voltages": lambda q: o.jump_voltages(
-        *q.system, voltage=q.ends, rates=[4e-4, 2e-4], back=False, settle=50.0, step=0.2, **QUIET
+        *q.system, voltage=q.ends, rates=[4e-4, 2e-4], settle=50.0, **QUICK
     ),
     "drive_branch": lambda q: o.drive_branch(
         *q.system, speed=q.ends, most=3, steps=16, settle=50.0, **QUIET
@@ -226,7 +208,6 @@ def figure(number: str, stride: int) -> xr.Dataset:
 
 
 def beam(number: int) -> xr.Dataset:
-    """Diagnose a beam of the benches."""
     case = draws.draw_beam(4500, number)
     return o.detect(case.record, case.guess, **QUIET)
 

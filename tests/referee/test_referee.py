@@ -37,10 +37,7 @@ def answer(speed=1.0, word=1, contact=0):
         (answer(speed=np.nextafter(1.0, 2.0)), ["bits of speed in 1 answers, size by up to 2e-16"]),
         (answer(contact=1), ["bits of in_contact in 1 answers, size by up to 1"]),
         (answer(speed=2.0, word=0), ["verdict: jump -> undecided: 1"]),
-        (
-            {"decisions": {"error": ["InputError: no"]}, "bits": {}},
-            ["error: an answer -> InputError: no: 1"],
-        ),
+        ({"decisions": {"error": ["no"]}, "bits": {}}, ["error: an answer -> no: 1"]),
     ],
 )
 def test_what_differs_is_said(capsys, other, lines):

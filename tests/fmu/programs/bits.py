@@ -6,7 +6,6 @@ from driver import open_fmu
 
 
 def simulate(path, end, count, values, names):
-    """Rows of outputs, and the files mapped into the process."""
     f = open_fmu(path).start(**values)
     times = [end * k / count for k in range(1, count + 1)]
     rows = [[float(x).hex() for x in f.step(time).get(*names)] for time in times]

@@ -4,7 +4,6 @@ from driver import harmonic, open_fmu
 
 
 def resume(path, data, end):
-    """A state saved at 77 s, resumed."""
     return open_fmu(path).restore(bytes.fromhex(data), 77.0).step(end).outputs()
 
 

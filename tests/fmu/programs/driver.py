@@ -152,7 +152,6 @@ class Fmu2:
         self.call("exitInitializationMode")
 
     def start(self, start_time=0.0, **values):
-        """Set and initialise; goes on to step mode."""
         self.set(**values)
         self.enter(start_time)
         self.leave()
@@ -166,13 +165,11 @@ class Fmu2:
         return self
 
     def step(self, target):
-        """Step to a point of time."""
         self.call("doStep", self.time, target - self.time)
         self.time = target
         return self
 
     def at(self, *times):
-        """Step through points of time."""
         for time in times:
             self.step(time)
         return self
@@ -234,7 +231,6 @@ class Fmu3(Fmu2):
         assert not (again or end or nominals or values or defined)
 
     def handle(self):
-        """All that an importer does at an event."""
         self.fmu.enterEventMode()
         self.update()
         self.fmu.enterStepMode()
@@ -248,23 +244,12 @@ def describe(path):
 
 
 def open_fmu(path, **options):
-    """An instance of an FMU, of its own FMI version."""
     return (Fmu3 if describe(path).fmiVersion.startswith("3") else Fmu2)(path, **options)
 
 
 def free_all():
     for f in list(Fmu2.alive):
         f.free()
-
-
-def outputs(path, end, **values):
-    """Outputs at a time of a run with the paper's drive at eta = 1.13, chaotic motion."""
-    return open_fmu(path).start(**{**harmonic(1.13), **values}).step(end).outputs()
-
-
-def compiled():
-    """Whether a compiled kernel of the pythonfmu form is mapped into this process."""
-    return "/kernel-" in Path("/proc/self/maps").read_text()
 
 
 def harmonic(eta):

@@ -20,23 +20,14 @@ def simulate(path, values, names, step, count):
         assert execution.real_initial_value(index, variables[name], value)
     observer = CosimObserver.create_last_value()
     assert execution.add_observer(observer)
-    rows = []
+    reals, rows = [name for name in names if name != "impact_count"], []
+    places = [variables[name] for name in reals]
     for k in range(1, count + 1):
         assert execution.step(), k
         now = execution.status().current_time * 1e-9
-        rows.append([now, *last_values(observer, index, variables, names)])
+        found = dict(zip(reals, observer.last_real_values(index, places), strict=True))
+        (found["impact_count"],) = observer.last_integer_values(index, [variables["impact_count"]])
+        rows.append([now, *(found[name] for name in names)])
     print("ANSWER " + json.dumps([rows, len(variables)]))
     sys.stdout.flush()
     os._exit(0)  # libcosim's own threads outlive it, and pythonfmu's library the FMU
-
-
-def last_values(observer, index, variables, names):
-    """Values of outputs after a step."""
-    counts = [name for name in names if name.endswith("_count")]
-    wanted = [name for name in names if name not in counts]
-    found = observer.last_real_values(index, [variables[name] for name in wanted])
-    values = dict(zip(wanted, found, strict=True))
-    if counts:
-        found = observer.last_integer_values(index, [variables[name] for name in counts])
-        values.update(zip(counts, found, strict=True))
-    return [values[name] for name in names]

@@ -20,7 +20,6 @@ def opened(path):
 
 
 def simulate(path, values, names, step, count):
-    """Rows of time and outputs."""
     slave, references = opened(path)
     third = hasattr(slave, "get_float64")
     put = slave.set_float64 if third else slave.set_real

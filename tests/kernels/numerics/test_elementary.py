@@ -19,7 +19,6 @@ TURNS = (
 
 
 def ulps(value, exact):
-    """Distance in units in the last place of the exact value."""
     return float(abs(mp.mpf(value) - exact) / math.ulp(float(exact)))
 
 

@@ -9,25 +9,15 @@ from fmu_src.models.electrodynamic_shaker import variables as coil_table
 from fmu_src.models.motor_shaker import variables as motor_shaker_table
 from fmu_src.models.oscillator import variables as oscillator_table
 
-MODELS = [
-    (oscillator, oscillator_table.VARIABLES),
-    (shaker, motor_shaker_table.VARIABLES),
-    (coil, coil_table.VARIABLES),
-]
+TABLES = (oscillator_table, motor_shaker_table, coil_table)
+MODELS = [(m, t.VARIABLES) for m, t in zip((oscillator, shaker, coil), TABLES, strict=True)]
 PROMISED = {  # given out before: saved states and other people's scripts rely on them
     **{"m1": 0, "e": 6, "box_amplitude": 15, "x1": 21, "x_rel_max": 40, "sample_count": 42},
     **{"x1_sample[1]": 43, "x2_sample[1]": 243, "v1_sample[1]": 443, "v2_sample[200]": 842},
     **{"evaluations": 843, "evaluation_limit": 844, "clearance": 845, "e_slope": 846},
     **{"sticking_energy": 847, "a2_max": 852, "force1_amplitude": 853, "force2_amplitude": 854},
-    **{
-        "force1": 855,
-        "force1_3": 858,
-        "force2": 859,
-        "force2_3": 862,
-        "wall": 863,
-        "stroke": 864,
-        "impact_side": 865,
-    },
+    **{"force1": 855, "force1_3": 858, "force2": 859, "force2_3": 862},
+    **{"wall": 863, "stroke": 864, "impact_side": 865},
 }
 
 

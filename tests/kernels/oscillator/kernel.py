@@ -12,17 +12,8 @@ from fmu_src.kernels.oscillator import motion, stepper
 from fmu_src.kernels.oscillator.excitation import inputs_changed
 
 DEFAULTS = {
-    "m1": 1.0,
-    "m2": 1.0,
-    "k1": 1.0,
-    "k2": 1.2,
-    "d1": 0.01,
-    "d2": 0.01,
-    "e": 0.7,
-    "gamma": 3.6515e-4,
-    "box_amplitude": 1.0,
-    "box_frequency": 0.4,
-    "x_rel_max_on": 1.0,
+    **{"m1": 1.0, "m2": 1.0, "k1": 1.0, "k2": 1.2, "d1": 0.01, "d2": 0.01, "e": 0.7},
+    **{"gamma": 3.6515e-4, "box_amplitude": 1.0, "box_frequency": 0.4, "x_rel_max_on": 1.0},
     "evaluation_limit": 1e7,
 }
 FORCES = (
@@ -33,7 +24,6 @@ least_work = patch.multiple(stepper, WORK_BASE=5000.0, WORK_RATE=0.0)  # steps t
 
 
 def unstarted(**values):
-    """A memory with parameters and inputs set."""
     m = [0.0] * at.SIZE
     for name, value in {**DEFAULTS, **values}.items():
         m[getattr(at, name.upper())] = float(value)
@@ -48,14 +38,12 @@ def started(time=0.0, **values):
 
 
 def advanced(m, *times):
-    """The memory, advanced through communication points."""
     for time in times:
         assert stepper.advance(m, time) == at.OK
     return m
 
 
 def set_inputs(m, **values):
-    """Set inputs by name."""
     for name, value in values.items():
         m[getattr(at, name.upper())] = value
 
@@ -90,7 +78,6 @@ def examples(count):
 
 
 def sizes(low, high):
-    """Floats over several decades."""
     return st.floats(math.log(low), math.log(high)).map(math.exp)
 
 
@@ -122,11 +109,8 @@ def structures(draw, damping=2.0, clearance=False):
     Not near critical damping, where the sums of exponentials that the kernel is compared with
     cancel in double precision.
     """
-    values = {
-        "m2": draw(sizes(0.2, 5.0)),
-        "k2": draw(sizes(0.2, 5.0)),
-        "box_frequency": draw(sizes(0.15, 4.0)),
-    }
+    values = {name: draw(sizes(0.2, 5.0)) for name in ("m2", "k2")}
+    values["box_frequency"] = draw(sizes(0.15, 4.0))
     for name, critical in (("d1", 2.0), ("d2", 2.0 * math.sqrt(values["k2"] * values["m2"]))):
         value = draw(st.just(0.0) | sizes(1e-3, damping))
         values[name] = 0.9 * value if abs(value - critical) < 0.05 * critical else value
@@ -157,7 +141,6 @@ def resonances(draw):
     detuning = draw(st.just(0.0) | sizes(1e-14, 9e-5))
     values["box_frequency"] = math.sqrt(square) * (1.0 + detuning * draw(st.sampled_from((-1, 1))))
     values["d1"] = draw(st.just(0.0) | sizes(1e-14, 1e-5))
-    values["d2"] = values["m2"] * (
-        values["d1"] if "equal" in kind else draw(st.just(0.0) | sizes(1e-14, 1e-5))
-    )
+    own = values["d1"] if "equal" in kind else draw(st.just(0.0) | sizes(1e-14, 1e-5))
+    values["d2"] = values["m2"] * own
     return values

@@ -24,14 +24,6 @@ FIFTH = {"m2": 1.0, "k2": 1.2, "d1": 0.01, "d2": 0.01, "box_amplitude": 0.0, "bo
 HALF_TURN = math.pi  # its sine is 1.2e-16 as a float, and nothing as an angle
 
 
-def separate_gap(values, x, v, phase, t):
-    """Gap after a time ``t`` if both masses moved on their own from a common start, by Newton's
-    law.
-    """
-    first, second = truth.free_motion({**DEFAULTS, **values}, (x, v, x, v), phase)
-    return (second - first)(t)
-
-
 @examples(150)
 @given(structures(), st.sampled_from([0.0, HALF_TURN]) | rounded(0.0, 6.28))
 @example({"k2": 1.0, "m2": 1.0, "d1": 0.01, "d2": 0.02, "box_frequency": 0.4}, HALF_TURN)
@@ -42,9 +34,9 @@ def test_from_rest_newton_decides(values, phase):
     unlike = abs(values["k2"] / values["m2"] - 1.0), abs(values["d2"] / values["m2"] - values["d1"])
     assume(all(difference == 0.0 or difference > 1e-6 for difference in unlike))
     with mp.workdps(250):
-        gap = separate_gap(
-            values, 0, 0, mp.pi if phase == HALF_TURN else mp.mpf(phase), mp.mpf("1e-15")
-        )
+        exact = mp.pi if phase == HALF_TURN else mp.mpf(phase)  # Newton's law from a common start
+        first, second = truth.free_motion({**DEFAULTS, **values}, (0, 0, 0, 0), exact)
+        gap = (second - first)(mp.mpf("1e-15"))
         pressed = gap < mp.mpf("1e-150")  # alike, they stay together
     assert started(**values)[at.IN_CONTACT] == float(pressed)
 

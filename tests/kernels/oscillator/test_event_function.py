@@ -65,15 +65,14 @@ def size(signal):
     return sum(abs(complex(c)) for c, _ in signal.terms) + float(sum(map(abs, signal.polynomial)))
 
 
+# critically damped
+CRITICAL = {"d1": 2.0, "d2": 2.0 + 1e-9, "k2": 1.0, "box_frequency": 0.4, "phase_start": 1.0}
+
+
 @MAKERS
 @examples(60)
 @given(structures(clearance=True), STATES, AGES)
-# critical damping
-@example(
-    {"d1": 2.0, "d2": 2.0 + 1e-9, "k2": 1.0, "box_frequency": 0.4, "phase_start": 1.0},
-    (-0.3, 0.2, 0.5, -0.4),
-    1.5,
-)
+@example(CRITICAL, (-0.3, 0.2, 0.5, -0.4), 1.5)
 def test_value_and_derivatives(make, values, state, age):
     m, signal = make(values, state)
     node, at_node = m[at.RIGHT_AGE], m[at.RIGHT_VALUES : at.RIGHT_VALUES + 3]
@@ -88,6 +87,12 @@ def test_value_and_derivatives(make, values, state, age):
         signal = signal.derivative()
 
 
+def derivative(signal, order):
+    for _ in range(order):
+        signal = signal.derivative()
+    return signal
+
+
 @MAKERS
 @examples(60)
 @given(structures(clearance=True), STATES, AGES)
@@ -97,28 +102,20 @@ def test_bounds_hold_for_all_later_times(make, values, state, age):
     found = event_function.evaluate(m, age)
     later = age + np.concatenate([np.linspace(0.0, 3.0, 300), np.geomspace(3.0, 300.0, 300)])
     rounding = 1e-12 * (size(signal) + 1.0) * max(1.0, signal.fastest_rate()) ** 5
-    fifth = signal.derivative().derivative().derivative().derivative().derivative()
+    fifth = derivative(signal, 5)
     assert np.abs(fifth.sample(later)).max() <= found[5] * (1 + 1e-9) + rounding
     highest = np.abs(fifth.derivative().sample(later - age)).max()
     assert highest <= sixth * (1 + 1e-9) + rounding * max(1.0, signal.fastest_rate())
 
 
+SLOW = {"m2": 1.0, "d1": 5.0, "box_frequency": 0.4, "phase_start": 0.0}
+
+
 @examples(30)
 @given(structures(), STATES, sizes(1e-16, 2e-5), sizes(1e-12, 0.1), AGES)
-@example(
-    {"m2": 1.0, "d1": 5.0, "box_frequency": 0.4, "phase_start": 0.0},
-    (-0.3, 0.2, 0.5, -9.0),
-    1e-9,
-    0.1,
-    0.0,
-)
-@example(  # apart by the slow of two decays alone, by 0.2 in a time of 1
-    {"m2": 1.0, "d1": 5.0, "box_frequency": 0.4, "phase_start": 0.0},
-    (-0.3, 0.03, 1.0, math.sqrt(5.25) - 2.5),
-    1e-12,
-    0.1,
-    0.0,
-)
+@example(SLOW, (-0.3, 0.2, 0.5, -9.0), 1e-9, 0.1, 0.0)
+# apart by the slow of two decays alone, by 0.2 in a time of 1
+@example(SLOW, (-0.3, 0.03, 1.0, math.sqrt(5.25) - 2.5), 1e-12, 0.1, 0.0)
 def test_bounds_of_nearly_equal_oscillators_hold_as_long_as_they_are_used(
     values, state, near, gap, age
 ):
@@ -128,8 +125,7 @@ def test_bounds_of_nearly_equal_oscillators_hold_as_long_as_they_are_used(
     assert event_function.are_nearly_equal(m)
     spacing = m[at.SPACING]
     found = event_function.evaluate(m, age)[5]
-    for _ in range(5):
-        signal = signal.derivative()
+    signal = derivative(signal, 5)
     assert all(abs(signal(age + part * spacing)) <= found for part in np.linspace(0.0, 1.0, 8))
     sixth, found = signal.derivative(), m[at.REMAINDER] / m[at.HERMITE + 2]
     later = spacing * np.concatenate([np.linspace(0.0, 8.0, 20), np.linspace(8.0, LONGEST, 20)])
@@ -141,8 +137,7 @@ def test_bounds_of_nearly_equal_oscillators_hold_as_long_as_they_are_used(
 def test_bounds_of_higher_derivatives(values, state, order):
     m, signal = flight_and_gap(values, state)
     rounding = 1e-12 * (size(signal) + 1.0) * max(1.0, signal.fastest_rate()) ** order
-    for _ in range(order):
-        signal = signal.derivative()
+    signal = derivative(signal, order)
     highest = np.abs(signal.sample(np.linspace(0.0, 60.0, 3000))).max()
     assert highest <= sum(event_function.derivative_bounds(m, order)) * (1 + 1e-9) + rounding
 
@@ -156,9 +151,7 @@ def test_the_derivative_that_decides_on_the_boundary_is_newtons(values, state, l
     assume(order >= 0)
     rate = max(1.0, signal.fastest_rate())
     scale = (size(signal) + 1.0) * rate ** (order + 2)
-    for _ in range(order):
-        signal = signal.derivative()
-    assert abs(value + float(signal(0))) <= 1e-12 * scale
+    assert abs(value + float(derivative(signal, order)(0))) <= 1e-12 * scale
 
 
 APART = {"clearance": 0.5, "box_amplitude": 0.0}
@@ -210,10 +203,8 @@ def test_rounding_is_that_of_each_part(slot, places):
 @given(structures(), STATES)
 def test_both_ways_to_a_bound_of_the_sixth_derivative_agree(values, state):
     m, _ = flight_and_gap(values, state)
-    for oscillator, free in (
-        (at.OSCILLATOR_1, at.EVENT_FREE_A),
-        (at.OSCILLATOR_2, at.EVENT_FREE_B),
-    ):
+    both = (at.OSCILLATOR_1, at.EVENT_FREE_A), (at.OSCILLATOR_2, at.EVENT_FREE_B)
+    for oscillator, free in both:
         expected = event_function.free_bound(m, oscillator, free, 6)
         found = event_function.sixth_bound(m, oscillator, m[free], m[free + 1])
         assert found == pytest.approx(expected, rel=1e-9, abs=1e-12)
@@ -229,17 +220,11 @@ def grown_size(values, age):
 
 
 def fastest(values):
-    """The fastest oscillation, over omega."""
     return max(1.0, math.sqrt(values["k2"] / values["m2"]), values["box_frequency"])
 
 
 @examples(60)
-@given(
-    st.just(0.0) | sizes(1e-16, 1e-4),
-    st.just(0.0) | sizes(1e-16, 9e-5),
-    st.floats(0.0, 6.28),
-    sizes(0.1, 1e6),
-)
+@given(*[st.just(0.0) | sizes(1e-16, 9e-5)] * 2, st.floats(0.0, 6.28), sizes(0.1, 1e6))
 def test_it_is_the_closed_form(damping, detuning, phase, time):
     """In high precision: the growing part, and what it is of any age."""
     values = {"d1": damping, "box_frequency": 1.0 + detuning, "m2": 1e-9, "k2": 1e-9, "d2": 0.0}
@@ -296,15 +281,11 @@ def test_a_gap_of_nearly_equal_oscillators_is_bounded_by_its_own(state, near, ga
     """Without what rounding takes from the displacements, and far below the sum of both."""
     values = {"k2": 1.0 + near, "d1": damping, "d2": damping * (1.0 - near), "box_frequency": 1.0}
     x1, v1, rise, speed = state
-    m = started(
-        x1_start=x1, v1_start=v1, x2_start=x1 + gap * rise, v2_start=v1 + gap * speed, **values
-    )
+    m = flight(x1, v1, x1 + gap * rise, v1 + gap * speed, **values)
     assert event_function.are_nearly_equal(m)
     starts = (m[at.X1_START], m[at.V1_START], m[at.X2_START], m[at.V2_START])
     first, second = truth.free_motion({**DEFAULTS, **values}, starts, mp.mpf(0))
-    signal = second - first
-    for _ in range(5):
-        signal = signal.derivative()
+    signal = derivative(second - first, 5)
     found, spacing = event_function.evaluate(m, age)[5], m[at.SPACING]
     ahead = np.linspace(0.0, event_function.AHEAD, 8)
     assert max(abs(signal(age + part * spacing)) for part in ahead) <= found
@@ -317,25 +298,21 @@ def test_a_gap_of_nearly_equal_oscillators_is_bounded_by_its_own(state, near, ga
 ALIKE = {"m2": 1.0, "k2": 1.0, "d1": 0.0, "d2": 0.0, "box_frequency": 1.0, "phase_start": 1.0}
 
 
-@pytest.mark.parametrize(
-    "values",
-    [
-        *(
-            {**ALIKE, "m2": eta**-2, "d1": 0.01, "box_frequency": eta}
-            for eta in (0.4, 0.5, 2.0, 3.0)
-        ),
-        {**ALIKE, "force1_amplitude": 0.3},
-        {**ALIKE, "force2_amplitude": 0.3, "k2": 1.0 + 1e-9},
-    ],
-)
+DRIVEN = [
+    *({**ALIKE, "m2": eta**-2, "d1": 0.01, "box_frequency": eta} for eta in (0.4, 0.5, 2.0, 3.0)),
+    {**ALIKE, "force1_amplitude": 0.3},
+    {**ALIKE, "force2_amplitude": 0.3, "k2": 1.0 + 1e-9},
+]
+
+
+@pytest.mark.parametrize("values", DRIVEN)
 def test_what_a_quintic_may_miss_of_a_growing_amplitude(values):
     """Mass 2 is driven on its natural frequency, below that of mass 1 and above it; or both are
     alike, and a force drives one of them.
     """
     m, signal = flight_and_gap(values, (-1e-3, 0.0, 1e-3, 0.0))
     assert m[at.SECULAR] != 0.0
-    for _ in range(5):
-        signal = signal.derivative()
+    signal = derivative(signal, 5)
     fifth, ahead = event_function.evaluate(m, 0.0)[5], 5.0 * m[at.SPACING]
     assert 0.14 * fifth < np.abs(signal.sample(np.linspace(0.0, ahead, 50))).max() <= fifth
     signal = signal.derivative()

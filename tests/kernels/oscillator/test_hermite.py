@@ -147,7 +147,6 @@ STEEP = {"m2": 0.35, "k2": 0.468, "d1": 0.03, "d2": 0.9765, "box_frequency": 1.1
 
 
 def closed_form(m, age):
-    """All phasors by elementary functions."""
     sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * age)
     x_a, v_a = nodes.free_part_after(m, at.OSCILLATOR_1, m[at.FREE_A], m[at.FREE_A + 1], age)
     x_b, v_b = nodes.free_part_after(m, at.OSCILLATOR_2, m[at.FREE_B], m[at.FREE_B + 1], age)

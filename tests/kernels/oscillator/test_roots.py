@@ -48,11 +48,10 @@ def agree(found, expected, signal, horizon):
     terms = sum(abs(complex(c)) for c, _ in signal.terms) + sum(
         abs(float(p)) * horizon**k for k, p in enumerate(signal.polynomial)
     )
-    slope = abs(float(signal.derivative()(expected)))
-    return (
-        found is not None
-        and abs(found - float(expected)) <= 1e-15 * (1.0 + found) + truth.ROUNDING * terms / slope
-    )
+    if found is None:
+        return False
+    off = truth.ROUNDING * terms / abs(float(signal.derivative()(expected)))
+    return abs(found - float(expected)) <= 1e-15 * (1.0 + found) + off
 
 
 @examples(100)
@@ -128,11 +127,8 @@ def test_the_walk_leaves_what_a_look_up_leaves(values):
         reached, other = m[at.NODE], list(m)
         nodes.start_nodes(other)
         nodes.seek_interval(other, age)
-        for values_at, phasors, end in (
-            (at.LEFT_VALUES, at.LEFT, at.LEFT_AGE),
-            (at.RIGHT_VALUES, at.RIGHT, at.RIGHT_AGE),
-        ):
-            set_node_values(other, values_at, phasors, other[end])
+        set_node_values(other, at.LEFT_VALUES, at.LEFT, other[at.LEFT_AGE])
+        set_node_values(other, at.RIGHT_VALUES, at.RIGHT, other[at.RIGHT_AGE])
         assert m[at.NODE : at.RIGHT_VALUES + 3] == other[at.NODE : at.RIGHT_VALUES + 3]
 
 
@@ -176,10 +172,8 @@ def test_no_interval_that_rises_above_the_ceiling_is_crossed_unseen(values):
         before = m[at.RIGHT_AGE]
         cross_clear_intervals(m, 40.0, ceiling)
         assert m[at.RIGHT_AGE] > before
-        seen = (
-            gap.sample(np.linspace(before, m[at.LEFT_AGE], 400)) if m[at.LEFT_AGE] > before else []
-        )
-        assert max(seen, default=0.0) <= ceiling + 1e-12
+        crossed = np.linspace(before, m[at.LEFT_AGE], 400 * (m[at.LEFT_AGE] > before))
+        assert max(gap.sample(crossed), default=0.0) <= ceiling + 1e-12
         here = gap.sample(np.linspace(m[at.LEFT_AGE], m[at.RIGHT_AGE], 100)).max()
         assert m[at.RIGHT_AGE] >= 40.0 or here > ceiling - 0.02
         ceiling, calls = max(ceiling, here), calls + 1
@@ -192,11 +186,8 @@ def test_the_side_at_the_boundary_is_kept_up_to_rounding_and_until_it_crosses():
     assert 1e-15 < floor < 1e-13 and evaluate(m, 0.3)[0] > floor
     kept, slope = 2.0 * floor, -1e6 * floor
     for h0, h1, value in (
-        (-0.9 * floor, 0.0, kept),
-        (-1.1 * floor, 0.0, -1.1 * floor),
-        (0.0, 1.0, kept),
-        (0.0, 0.9 * slope, kept),
-        (0.0, 1.1 * slope, 0.0),
+        *((-0.9 * floor, 0.0, kept), (-1.1 * floor, 0.0, -1.1 * floor), (0.0, 1.0, kept)),
+        *((0.0, 0.9 * slope, kept), (0.0, 1.1 * slope, 0.0)),
     ):
         assert value_on_decided_side(m, 0.3, h0, h1) == value
 

@@ -23,15 +23,6 @@ def found(exported):
     return attractors(PAPER, **ASKED)
 
 
-def test_two_periodic_responses_coexist(found):
-    there = found.sel(eta=TWO)
-    assert int(there.number) == 2
-    assert there.multiplicity.values[:2].tolist() == [1.0, 2.0]
-    assert there.impacts_per_period.values[:2].tolist() == [1.0, 1.5]
-    assert there.share.values[:2].sum() == pytest.approx(1.0)
-    assert np.bincount(there.attractor_of)[1] / 24 == there.share.values[1]
-
-
 def test_the_same_seed_gives_the_same_starts(found):
     with patch.object(AttractorsJob, "chunk_size", 7):
         again = attractors(PAPER, **ASKED)

@@ -77,13 +77,10 @@ def test_impacts_begin_where_the_linear_response_touches():
     start = orbit(structure, guess={"impact_time": [2.0]}, **known)
     above = branch(structure, start=start, limits=(0.08, 0.22), **given)
     assert values(above, GRAZING) == pytest.approx([0.1], abs=1e-9)
-    below = branch(structure, start=above, switch=grazing_of(above), limits=(0.08, 0.22), **given)
+    first = int(np.flatnonzero(above.bifurcation_kind.values == GRAZING)[0])
+    below = branch(structure, start=above, switch=first, limits=(0.08, 0.22), **given)
     assert not (below.node_kind.values >= 0).any()
     assert below.amplitude.values.min() == 0.08
-
-
-def grazing_of(found):
-    return int(np.flatnonzero(found.bifurcation_kind.values == GRAZING)[0])
 
 
 def test_a_doubled_branch_leaves_at_a_period_doubling():

@@ -96,8 +96,6 @@ class Normal:
 
 
 class Known(CharacteristicPolynomial):
-    """The polynomial of multipliers that are known."""
-
     log_size = 0.0
 
     def __init__(self, *multipliers):
@@ -105,7 +103,6 @@ class Known(CharacteristicPolynomial):
 
 
 def between(curve, first, last):
-    """The points of a normal form between two places x."""
     roots = []
     for x in (first, last):
         guess = np.array([x, -2.0 * x**3, 3.0 * x * x])

@@ -56,7 +56,6 @@ def pushed_point(structure, eta, size):
 
 
 def after(instance, point, start, periods=1):
-    """State of the FMU some periods after a start."""
     start_motion(instance, *point, start)
     instance.step(0.0, periods * point.excitation.period)
     return np.array(instance.get(*STATE))

@@ -5,12 +5,6 @@ from pathlib import Path
 
 
 def altered_fmu(source: Path, target: Path, **changes: tuple[str, str]) -> Path:
-    """Copy an FMU with attributes of its description replaced.
-
-    Examples
-    --------
-    ``altered_fmu(a, b, modelName=("Old", "New"))``
-    """
     with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
         for name in old.namelist():
             content = old.read(name)

@@ -20,7 +20,6 @@ def oscillator_in():
 
 @pytest.fixture(params=FORMS)
 def any_fmu(request, oscillator_in):
-    """Every form of the FMU in turn."""
     return oscillator_in(request.param)
 
 

@@ -84,7 +84,6 @@ def misbehaving(
 
 
 def exported(library: Path) -> list[str]:
-    """Names of the functions of FMI 3.0 that a library has."""
     found = re.findall(rb"\0(fmi3[A-Z]\w+)(?=\0)", library.read_bytes())
     return sorted({name.decode() for name in found})
 

@@ -15,7 +15,6 @@ def work(path: str) -> None:
 
 
 def main(path: str, ending: str) -> None:
-    """Work, then end in one of the ways in which processes end."""
     work(path)
     mine = process_temporary_folder()
     print(mine, flush=True)

@@ -72,9 +72,8 @@ def test_what_others_could_have_written_is_compiled_anew(cache, part, mode):
 def test_what_is_somebody_else_s_is_loaded_only_from_the_package(cache, monkeypatch, shipped):
     folder, _ = cache
     path = find_or_compile_library(SOURCE, folder)
-    monkeypatch.setattr(
-        "orchestrate.files.trusted_owners", lambda: ({path.stat().st_uid + 1}, set())
-    )
+    others = {path.stat().st_uid + 1}, set()
+    monkeypatch.setattr("orchestrate.files.trusted_owners", lambda: others)
     if shipped:
         monkeypatch.setattr(c_library, "SHIPPED", folder)
         assert find_or_compile_library(SOURCE, folder) == path

@@ -14,7 +14,6 @@ from .altered import altered_fmu
 
 
 def changed(words):
-    """Write an FMU with something else in its description."""
     return lambda fmu, path: altered_fmu(fmu, path, **words)
 
 

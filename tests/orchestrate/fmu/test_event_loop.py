@@ -37,7 +37,6 @@ def bits(played):
 
 
 def done(fmu, structure):
-    """What the loop answers, and the instance's state at the end."""
     with Player(fmu) as player:
         player.start(structure, (0.1, 0.2, 0.0, 0.0) if not structure.bonded else REST)
         played = EventLoop(player, CUBIC, PLAYED).run(NODES, CUBICS, SAMPLES)
@@ -82,7 +81,6 @@ def test_rows_and_impacts_are_those_of_single_steps(name, event_fmu):
 
 
 def refusal(fmu, cubics=CUBICS, nodes=NODES, **inputs):
-    """What is said where the FMU refuses a call."""
     with Player(fmu) as player:
         player.start(STRUCTURE)
         player.set(**inputs)
@@ -91,24 +89,18 @@ def refusal(fmu, cubics=CUBICS, nodes=NODES, **inputs):
         return str(caught.value)
 
 
-def bad_row(value):
-    """Cubics of which one has a bad number."""
-    cubics = CUBICS.copy()
-    cubics[200, 2] = value
-    return cubics
+BAD = CUBICS.copy()
+BAD[200, 2] = np.nan
+REFUSED = {
+    "box_snap = nan": {"cubics": BAD},
+    "currentCommunicationPoint = 2.0 s": {"nodes": NODES + 2.0},
+    "evaluation_limit": {"evaluation_limit": 2},
+}
 
 
-@pytest.mark.parametrize(
-    ("words", "arguments"),
-    [
-        ("box_snap = nan", {"cubics": bad_row(np.nan)}),
-        ("currentCommunicationPoint = 2.0 s", {"nodes": NODES + 2.0}),
-        ("evaluation_limit", {"evaluation_limit": 2}),
-    ],
-    ids=["input", "time", "discarded"],
-)
-def test_a_refusal_is_passed_on(words, arguments, event_fmu):
-    assert words in refusal(event_fmu, **arguments)
+@pytest.mark.parametrize("words", REFUSED)
+def test_a_refusal_is_passed_on(words, event_fmu):
+    assert words in refusal(event_fmu, **REFUSED[words])
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the bad FMU is made for Linux")

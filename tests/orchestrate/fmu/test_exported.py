@@ -42,13 +42,9 @@ def maker(monkeypatch, real):
             raise exported.CannotExport(REASON)
         target = Path(folder) / form / f"{name}.fmu"
         target.parent.mkdir(parents=True, exist_ok=True)
-        source = (
-            real[form]
-            if name == OSCILLATOR
-            else find_or_export(name, form, exported.CLONE / "build").path
-        )
-        shutil.copy(source, target)
-        return target
+        other = name != OSCILLATOR
+        source = find_or_export(name, form, exported.CLONE / "build").path if other else real[form]
+        return shutil.copy(source, target)
 
     monkeypatch.setattr(exported.sources, "export", export)
     export.asked, export.without = asked, without
@@ -67,8 +63,7 @@ def places(monkeypatch, tmp_path):
 def put(source, folder, form="fmi3", model=OSCILLATOR):
     target = folder / form / f"{model}.fmu"
     target.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copy(source, target)
-    return target
+    return shutil.copy(source, target)
 
 
 def test_what_is_missing_is_exported_once(maker, places):

@@ -30,16 +30,6 @@ def trajectory(instance, start, steps=25):
     return values
 
 
-def test_what_is_set_is_read(any_fmu):
-    values = {"m2": 0.1, "e": 0.3, "bonded": True, "box_amplitude": -1.5e-7, "x_rel_max_on": False}
-    with Instance(any_fmu) as instance:
-        instance.set(**values)
-        instance.initialize()
-        assert instance.get(*values) == list(values.values())
-        instance.set(box_frequency=2.0)
-        assert instance.get("box_frequency", "m2") == [2.0, 0.1]
-
-
 def test_initialize_begins_at_a_time(any_fmu):
     with Instance(any_fmu) as instance:
         instance.initialize(start_time=5.0, x1_start=-0.25, **CHAOS)
@@ -71,19 +61,6 @@ def test_a_restored_state_gives_the_same_bits(instance, any_fmu):
         other.initialize()
         other.restore_state(state)
         assert trajectory(other, 100.0) == once
-
-
-def test_reset(instance):
-    instance.reset()
-    instance.initialize(**CHAOS)
-    assert instance.get("impact_count", "x1") == [0, 0.0]
-    once = trajectory(instance, 0.0)
-    instance.reset()
-    instance.initialize()
-    assert instance.get("box_frequency") == [0.4]  # start values are back too
-    instance.reset()
-    instance.initialize(**CHAOS)
-    assert trajectory(instance, 0.0) == once
 
 
 def test_every_impact_is_there(event_fmu):

@@ -3,7 +3,7 @@
 from hypothesis import strategies as st
 
 from orchestrate.model import Drive, Excitation, Structure
-from orchestrate.model.ranges import PUSHES, STRUCTURE, Quantity
+from orchestrate.model.ranges import DRIVE, PUSHES, STRUCTURE, Quantity
 
 SCALE = st.floats(1e-6, 1e6)
 LOSS = st.one_of(st.just(0.0), SCALE)
@@ -26,11 +26,8 @@ def structure(stroke: float, **values: float) -> Structure:
     return Structure(**values, stroke=stroke and stroke + max(0.0, values["clearance"]))
 
 
-STRUCTURES = st.builds(
-    structure,
-    **{name: values_of(quantity) for name, quantity in STRUCTURE.items()},
-    bonded=st.booleans(),
-)
+NUMBERS_OF_ONE = {name: values_of(quantity) for name, quantity in STRUCTURE.items()}
+STRUCTURES = st.builds(structure, **NUMBERS_OF_ONE, bonded=st.booleans())
 NUMBERS = st.fixed_dictionaries(
     {"mu": SMALL, "kappa": SMALL, "D1": RATIO, "D2": RATIO, "e": st.floats(0.0, 1.0)}
 )
@@ -38,15 +35,4 @@ PUSHED = st.floats(-1e3, 1e3)
 OF_BOX = {"frequency": SCALE, "amplitude": LOSS, "phase": st.floats(-1e3, 1e3)}
 EXCITATIONS = st.builds(Excitation, **OF_BOX)
 WITH_FORCES = st.builds(Excitation, **OF_BOX, **dict.fromkeys(PUSHES, PUSHED))
-DRIVES = st.builds(
-    Drive,
-    box_mass=SCALE,
-    box_stiffness=LOSS,
-    box_damping=LOSS,
-    unbalance_mass=SCALE,
-    unbalance_radius=SCALE,
-    rotor_inertia=SCALE,
-    motor_constant=SCALE,
-    armature_resistance=SCALE,
-    armature_inductance=LOSS,
-)
+DRIVES = st.builds(Drive, **{name: values_of(quantity) for name, quantity in DRIVE.items()})

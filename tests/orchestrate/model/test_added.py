@@ -20,15 +20,10 @@ FORMS = [
 @pytest.mark.parametrize("name", ADDED)
 def test_every_constructor_takes_it(name):
     value = {name: 0.02}
-    made = [
-        Structure(**value),
-        Structure.nondimensional(**value),
-        Structure.from_halves(**HALVES, **value),
-        Structure.from_bonded(**BONDED, **value),
-        Structure().replace(**value),
-        Structure.from_attributes(Structure(**value).parameters()),
-        Structure().replace(**parse_changes([f"{name}=0.02"])),  # --set
-    ]
+    changed = Structure().replace(**value), Structure().replace(**parse_changes([f"{name}=0.02"]))
+    made = [Structure(**value), Structure.nondimensional(**value), *changed]
+    made += [Structure.from_halves(**HALVES, **value), Structure.from_bonded(**BONDED, **value)]
+    made += [Structure.from_attributes(Structure(**value).parameters())]
     for structure in made:
         assert structure.get(name) == structure.parameters()[name] == 0.02
         assert f"{name}0.02" in structure.label()
@@ -58,12 +53,9 @@ def test_with_a_length_in_it_the_level_counts_and_scaling_it_too_does_not(name):
     structure = Structure(**{name: 0.05}, e=0.9)
     power = STRUCTURE[name].dimension["m"]
     assert structure.has_scale and not Structure().has_scale
+    asked = {"frequency": 1.2, "periods": 3}
     one, other, same = (
-        orchestrate.simulate(structure.replace(**{name: value}), frequency=1.2, **asked).x_rel
-        for value, asked in (
-            (0.05, {"amplitude": 1.0, "periods": 3}),
-            (0.05, {"amplitude": 2.0, "periods": 3}),
-            (0.05 * 2.0**power, {"amplitude": 2.0, "periods": 3}),
-        )
+        orchestrate.simulate(structure.replace(**{name: value}), amplitude=size, **asked).x_rel
+        for value, size in ((0.05, 1.0), (0.05, 2.0), (0.05 * 2.0**power, 2.0))
     )
     assert np.array_equal(same, 2.0 * one) and not np.allclose(other, 2.0 * one, rtol=1e-6)

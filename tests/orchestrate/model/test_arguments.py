@@ -28,10 +28,7 @@ def test_what_is_no_integer_of_the_range_is_refused(value):
     ("running", "text"),
     [
         *(({name: 1}, rf"{name} = 1") for name in ("progress", "force", "keep_stale")),
-        *(
-            ({name: 7}, rf"{name} = 7: expected a path")
-            for name in ("store", "build_folder", "fmu")
-        ),
+        *(({name: 7}, f"{name} = 7: expected a path") for name in ("store", "build_folder", "fmu")),
         ({"progress": print}, "progress = "),
         ({"store": b"a.nc"}, "store = b'a.nc'"),
         ({"fmu": {"TwoMassImpactOscillator": 7}}, "fmu = 7: expected a path"),

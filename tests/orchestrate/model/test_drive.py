@@ -12,16 +12,12 @@ from orchestrate.model.ranges import DRIVE
 
 from .strategies import SMALL, STRUCTURES
 
-GIVEN = st.fixed_dictionaries(
-    {"beta": SMALL, "epsilon": SMALL, "b": SMALL, "Omega_b": SMALL, "D_b": SMALL}
-)
+GIVEN = st.fixed_dictionaries(dict.fromkeys(("beta", "epsilon", "b", "Omega_b", "D_b"), SMALL))
 
 
 def numbers_of(drive, structure):
-    by_structure = {
-        name: getattr(drive, name)(structure) for name in ("beta", "b", "Omega_b", "D_b")
-    }
-    return {"epsilon": drive.epsilon, **by_structure}
+    names = ("beta", "b", "Omega_b", "D_b")
+    return {"epsilon": drive.epsilon, **{n: getattr(drive, n)(structure) for n in names}}
 
 
 @given(GIVEN, STRUCTURES, SMALL)

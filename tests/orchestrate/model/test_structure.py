@@ -63,10 +63,8 @@ def test_ranges_are_the_fmu_s(name):
     quantity = STRUCTURE[name]
     for value in (quantity.minimum, quantity.maximum):
         assert getattr(Structure(**{name: value}), name) == value
-    below, above = (
-        np.nextafter(quantity.minimum, -math.inf),
-        np.nextafter(quantity.maximum, math.inf),
-    )
+    below = np.nextafter(quantity.minimum, -math.inf)
+    above = np.nextafter(quantity.maximum, math.inf)
     for value in (below, above, math.nan, math.inf, -math.inf, 10**400):
         with pytest.raises(InputError, match=f"^{name} = .*expected .* <= {name} <= "):
             Structure(**{name: value})
@@ -106,6 +104,10 @@ def test_layers_together_are_the_beam_that_was_measured(mass, f, zeta, h1, h2):
     assert near(structure.f2 / structure.f1, h2 / h1)
 
 
+LAYERS = {"mass": 1.0, "f": 10.0}
+WRONG = ((0.0, 1.0), (1.0, -2.0), (1.0,), 3.0, (1.0, math.nan))  # thicknesses
+
+
 @pytest.mark.parametrize(
     ("call", "words"),
     [
@@ -127,10 +129,10 @@ def test_layers_together_are_the_beam_that_was_measured(mass, f, zeta, h1, h2):
         (lambda: Structure.one_mass(f=3.0, k=50.0), "f1 and k1: expected one of them"),
         *(
             (
-                lambda h=h: Structure.from_bonded(mass=1.0, f=10.0, thicknesses=h),
+                lambda h=h: Structure.from_bonded(**LAYERS, thicknesses=h),
                 "thicknesses = .*expected two numbers > 0",
             )
-            for h in ((0.0, 1.0), (1.0, -2.0), (1.0,), 3.0, (1.0, math.nan))
+            for h in WRONG
         ),
     ],
 )

@@ -84,45 +84,25 @@ def test_excitations(file, text, frequency, amplitude):
     assert found.phase == 0.5
 
 
-MOTOR = """unbalance_mass = 0.025
-unbalance_radius = 0.02
-rotor_inertia = 5e-5
-motor_constant = 0.06
-armature_resistance = 12.0
-"""
+UNBALANCE = "unbalance_mass = 0.025\nunbalance_radius = 0.02\n"
+MOTOR = f"{UNBALANCE}rotor_inertia = 5e-5\nmotor_constant = 0.06\narmature_resistance = 12.0\n"
 BOX = "[box]\nbox_mass = 5.5\nbox_stiffness = 309.375\nbox_damping = 4.125\n"
-SHEET = """
-[motor]
-rated_voltage = 12.0
-stall_torque = 0.06
-unbalance_mass = 0.025
-unbalance_radius = 0.02
-{more}
-
-[box]
-box_mass = 5.5
-box_stiffness = 309.375
-box_damping = 4.125
-"""
+SHEET = f"[motor]\nrated_voltage = 12.0\nstall_torque = 0.06\n{UNBALANCE}{{more}}\n\n{BOX}"
 HALVES = """
-[structure]
-m1 = 1.5
-m2 = 1.2
-f1_hz = 42.0
-f2_hz = 55.0
-zeta1 = "0.7 %"
-zeta2 = 0.01
-e = 0.6
+[structure]\nm1 = 1.5\nm2 = 1.2\nf1_hz = 42.0\nf2_hz = 55.0\nzeta1 = "0.7 %"\nzeta2 = 0.01\ne = 0.6
 """
 
 
-@pytest.mark.parametrize("speed", ["rad_s = 200.0", "hz = 31.830988618379067"])
 @pytest.mark.parametrize(
-    "rotor", ["rotor_inertia = 4e-5", "mechanical_time_constant = 0.1333333333"]
+    "more",
+    [
+        "no_load_speed_rad_s = 200.0\nrotor_inertia = 4e-5",
+        "no_load_speed_hz = 31.830988618379067\nmechanical_time_constant = 0.1333333333",
+    ],
 )
-def test_a_motor_by_its_datasheet(file, speed, rotor):
+def test_a_motor_by_its_datasheet(file, more):
     """The motor of `beam`, whose inertia has the unbalance in it."""
-    drive = Drive.from_file(file(SHEET.format(more=f"no_load_speed_{speed}\n{rotor}")))
+    drive = Drive.from_file(file(SHEET.format(more=more)))
     expected = Drive.from_file("beam").parameters()
     assert drive.parameters() == pytest.approx(expected, rel=1e-9)
 
@@ -143,22 +123,17 @@ WRONG = [
     ("e = 0.7", "e = 0.7: outside of a section"),
     ("[struct]\ne = 0.7", "struct: .*structure?"),
     ("structure = 3", "structure = 3: expected a section"),
-    ("[[structure]]\ne = 0.7", "structure = .*: expected a section"),
     ("[structure\ne = 1", "not readable as TOML.*line 1"),
     ("[S]m1 = 0.15 kg  # one", 'm1 = 0.15 kg: write m1 = "0.15 kg"'),
-    ("[S]f1_hz = 46,5", "f1_hz = 46,5: write f1_hz = 46.5"),
     ("[S]f1_hz = 46,5 Hz", 'f1_hz = 46,5 Hz: write f1_hz = "46.5 Hz"'),
     ("[S]k1 = 1e3 N/m", "k1 = 1e3 N/m: write k1 = 1e3"),
     ("[S]e = 0.7\ne = 0.3\n", "not readable as TOML.*line 3"),
-    ("[S]e = \nk1 = 1.0", "not readable as TOML.*line 2"),
     ("[S]kapa = 1.2", "structure.kapa = 1.2: .*kappa"),
     ("[S]e = 1.2", "structure.e = 1.2: expected 0 <= e <= 1"),
-    ("[S]m1 = inf", "structure.m1 = inf kg: expected 1e-24 <= m1"),
     ('[S]e = "0.7"', "structure.e = '0.7': expected a number"),
     ("[S]e = true", "structure.e = True: expected a number"),
     ('[S]bonded = "yes"', "structure.bonded = 'yes': expected true or false"),
     ("[S]mu = 1.0\nm2 = 1.0", "structure.mu = 1.0: given with m2"),
-    ("[S]k1 = 1.0\nomega_hz = 1.0", "structure.omega_hz = 1.0: given with k1"),
     ("[S]preload = -1e-5", "structure.preload = -1e-05 m: expected 0 <= preload"),
     ("[S]D1 = 0.1", "structure.D2: missing"),
     ("[S]omega_hz = 1\nomega_rpm = 60", "structure.omega_rpm = 60: conflicts with omega_hz"),
@@ -177,13 +152,8 @@ WRONG = [
     (BOX, r"no section \[motor\]"),
     (f"[M]{BOX}", "motor.unbalance_mass: missing"),
     (f"[M]{MOTOR}[box]\nOmega_b = 1\nD_b = 0", "expected box_mass"),
-    (f"[M]{MOTOR}b = 1\n{BOX}", "motor.b = 1: given with unbalance_mass"),
-    ("[M]beta = 1\n[box]\nOmega_b = 1\nD_b = 0", "motor.epsilon: missing"),
     (SHEET.format(more="rotor_inertia = 1"), "expected one of no_load_speed_hz"),
-    (
-        SHEET.format(more="no_load_speed_rpm = 1\nrotor_inertia = 1\nmotor_constant = 1"),
-        "motor.rated_voltage = 12.0.* given with motor_constant",
-    ),
+    (SHEET.format(more="motor_constant = 1"), "motor.rated_voltage = 12.0.* given with motor_con"),
     ("[S]m1 = 1 # " + "x" * 70_000, "at most 65536"),
     ("[S]m1 = " + "[" * 10_000 + "]" * 10_000, "nested too deeply"),
 ]

@@ -286,11 +286,8 @@ def test_compiled_and_in_python_the_rule_is_the_same(seed):
     n, count = random.integers(1, 30), random.choice([1, 7, 8, 16, 40, 60, 200])
     decay = random.choice([random.uniform(), 1.0])
     samples = random.normal(size=(n, 4))[np.arange(count) % n]
-    samples += (
-        10.0 ** random.uniform(-12, 0)
-        * random.normal(size=4)
-        * decay ** np.arange(count).reshape(-1, 1)
-    )
+    size = 10.0 ** random.uniform(-12, 0) * random.normal(size=4)
+    samples += size * decay ** np.arange(count).reshape(-1, 1)
     decide(samples, 1.3, 2.0)
 
 
@@ -313,9 +310,8 @@ def denied_by_newton(instance, point, state, periods):
     away = np.abs(begin - point.faces_from_states(np.array(state))).max()
     size = max(np.abs(begin).max(), np.abs(orbit.nodes).max(initial=0.0))
     stable = np.abs(orbit.multipliers()).max() < 1.0
-    return (
-        why_no_motion(orbit) or away > 1e-3 * size or least_periods(orbit) != periods or not stable
-    )
+    other = why_no_motion(orbit) or least_periods(orbit) != periods
+    return other or away > 1e-3 * size or not stable
 
 
 @pytest.mark.usefixtures("exported")

@@ -54,12 +54,9 @@ def test_pauses_change_no_bit(instance, is_chain, monkeypatch):
     starts = random.uniform(0.0, 1.0, (len(some), 4)) * (-1, 5, 1, 1)
     starts[:, 1] += [max(0.0, -structure.clearance) for structure, _ in some]
     starts[0] = 0.0
-    settings = LoopSettings(
-        transient=30 if is_chain else [30 + i % 50 for i in range(len(some))],
-        is_chain=is_chain,
-        chain_gap=0.5 if is_chain else None,
-        **SETTINGS,
-    )
+    transient = 30 if is_chain else [30 + i % 50 for i in range(len(some))]
+    own = {"transient": transient, "is_chain": is_chain, "chain_gap": 0.5 if is_chain else None}
+    settings = LoopSettings(**own, **SETTINGS)
     chosen = starts[1:2] if is_chain else starts
     expected = response_loop(instance).simulate(some, chosen, settings)
     assert np.any(expected.counts["multiplicity"]) and np.any(expected.impacts)

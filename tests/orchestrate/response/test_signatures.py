@@ -14,11 +14,8 @@ from orchestrate.response.questions import Question
 
 from ..running.test_kills import kinds_of_questions
 
-KINDS = {
-    kind.asked: kind
-    for kind in sorted(kinds_of_questions(), key=lambda kind: kind.__name__)
-    if issubclass(kind, Question)
-}
+FOUND = sorted(kinds_of_questions(), key=lambda kind: kind.__name__)
+KINDS = {kind.asked: kind for kind in FOUND if issubclass(kind, Question)}
 ASKED = [name for name in KINDS if name != "cosimulate"]  # by a job that it makes itself
 
 

@@ -14,7 +14,6 @@ LINES = np.arange(1, 31)
 
 
 def fourier(structure, eta, mass, impulses):
-    """Amplitudes of a periodic response's lines by its Fourier integral over one period."""
     motion = simulate(structure, eta=eta, transient=1200, periods=1, points=8_000)
     time, acceleration = motion.time.values, motion[f"a{mass}_abs"].values
     speed = eta * structure.omega

@@ -12,7 +12,6 @@ Find = Callable[[str], Model]
 
 @pytest.fixture
 def find(tmp_path: Path) -> Find:
-    """Finds the same FMU for each model."""
     path = tmp_path / "model.fmu"
     path.write_bytes(b"an FMU")
     return lambda model: Model(path, model)

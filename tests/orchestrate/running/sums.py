@@ -104,8 +104,6 @@ class Noise(Squares):
 
 @dataclass(frozen=True)
 class Model:
-    """An FMU's description as the runner needs it."""
-
     path: Path
     name: str = "TwoMassImpactOscillator"
     guid: str = "{1}"

@@ -30,11 +30,7 @@ def data():
             "gap": metres(("name", "time"), np.arange(6).reshape(2, 3)),
             "peak": metres((), 2.5),
         },
-        {
-            "time": ("time", [0.0, 1.0, 2.0], {"units": "s"}),
-            "name": ["up", "down"],
-            "eta": ((), 1.2),
-        },
+        {"time": ("time", [0.0, 1.0, 2.0], {"units": "s"}), "name": ["up", "down"], "eta": 1.2},
         {"title": "a test", "e": 0.7},
     )
 
@@ -95,13 +91,9 @@ def test_whole_or_not_at_all(data, tmp_path, ending, monkeypatch):
 
 def test_a_frequency_stands_once_and_without_the_digits_of_a_conversion(tmp_path):
     turns = np.array([30.0, 30.1]) * (2.0 * np.pi)
-    data = xr.Dataset(
-        {"x": ("frequency", [1.0, 2.0], {"units": "m"})},
-        {
-            "frequency": ("frequency", turns, {"units": "rad/s"}),
-            "hertz": ("frequency", turns / (2.0 * np.pi), {"units": "Hz"}),
-        },
-    )
+    places = {"frequency": ("frequency", turns, {"units": "rad/s"})}
+    places["hertz"] = ("frequency", turns / (2.0 * np.pi), {"units": "Hz"})
+    data = xr.Dataset({"x": ("frequency", [1.0, 2.0], {"units": "m"})}, places)
     (path,) = formats.write(with_units(data, "Hz"), tmp_path / "a.csv")
     assert path.read_text().split() == ["frequency", "[Hz],x", "[m]", "30.0,1.0", "30.1,2.0"]
     (path,) = formats.write(data, tmp_path / "b.csv")

@@ -65,9 +65,8 @@ def test_a_guess_is_stored_for_a_run_that_is_interrupted(tmp_path, monkeypatch):
     made = compute_chunk(schedule.job, {}, guess.items, guess.previous, guess.warmup_items)
     schedule.add_result(guess, *made)
     store.close()
-    again = ChunkSchedule(
-        Forgetful("job"), open_store("job", {}, RunOptions(store=path)), {}, MODELS
-    )
+    store = open_store("job", {}, RunOptions(store=path))
+    again = ChunkSchedule(Forgetful("job"), store, {}, MODELS)
     assert (set(again.guesses), again.items_done()) == ({3}, 10)
     play(again, 2, seed=0)
     assert np.array_equal(again.result.value, again.job.work({}, again.job.items(), None)["value"])

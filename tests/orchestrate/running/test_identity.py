@@ -9,7 +9,6 @@ from orchestrate.running.job import format_brief, to_json_data
 
 
 def package(folder, **sources):
-    """A package in place of ours, one module a keyword."""
     folder.mkdir(exist_ok=True)
     for name, text in sources.items():
         path = folder.joinpath(*name.split("__")).with_suffix(".py")
@@ -30,7 +29,6 @@ def forget():
 
 @pytest.fixture
 def ours(tmp_path, monkeypatch):
-    """A small package in place of ours."""
     monkeypatch.setattr(identity, "PACKAGE", tmp_path / "small")
     monkeypatch.setattr(identity, "ROOT", "small")
     forget()

@@ -53,7 +53,6 @@ def border(**running: Any) -> xr.Dataset:
 
 
 def asked(function: Any, *structures: Any, **call: Any) -> Ask:
-    """A question, to be asked with keywords on how to run it."""
     return lambda **running: function(*structures, **call, **running)
 
 
@@ -99,7 +98,6 @@ SLOW |= {"FitJob"}
 
 
 def kinds_of_questions() -> set[type[Job]]:
-    """All jobs of the package that can be made."""
     for module in pkgutil.walk_packages(orchestrate.__path__, "orchestrate."):
         if not module.name.endswith("__main__"):
             import_module(module.name)

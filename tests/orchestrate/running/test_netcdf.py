@@ -51,10 +51,8 @@ def forge(path, kind):
             file.createVariable("x", "f8", ("n",), zlib=True, chunksizes=(1 << 20,))
         else:
             file.createVariable("x", "f8", ("n",))
-            name, value = {"scale": ("scale_factor", "x"), "time": ("units", "days since \x1b[2J")}[
-                kind
-            ]
-            file["x"].setncattr(name, value)
+            forged = {"scale": ("scale_factor", "x"), "time": ("units", "days since \x1b[2J")}
+            file["x"].setncattr(*forged[kind])
 
 
 @pytest.mark.parametrize("kind", ["bomb", "scale", "time", "types"])

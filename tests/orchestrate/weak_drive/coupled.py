@@ -18,8 +18,6 @@ SHAKER_STARTS = ("position_start", "velocity_start", "angle_start", "speed_start
 
 
 class System(NamedTuple):
-    """A structure and what shakes it."""
-
     structure: Structure
     drive: Drive
 
@@ -79,7 +77,6 @@ def master(system, scheme, state, form="fmi3", kind=Master):
 
 
 def state_of(m):
-    """State of a master, in the order of :func:`master`."""
     return [*(m[name] for name in ORDER), *m.drive.instance.get("motor_current")]
 
 

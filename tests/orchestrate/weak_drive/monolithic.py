@@ -24,7 +24,6 @@ class Monolith:
         self.clearance = 0.0 if structure.bonded else structure.clearance
 
     def pulls(self, state):
-        """Forces of the springs and dampers on the box."""
         x1, v1, x2, v2 = state[:4]
         o = self.o
         return o.k1 * x1 + o.d1 * v1, o.k2 * (x2 - self.clearance) + o.d2 * v2
@@ -39,7 +38,6 @@ class Monolith:
         return s.motor_constant * drop / s.armature_resistance, 0.0
 
     def rates(self, state, together, time=0.0):
-        """Right-hand side in flight, or in contact."""
         state = np.asarray(state).tolist()  # plain floats take half the time
         _, v1, _, v2, y, v, phi, w, i = state
         s, o = self.s, self.o
@@ -118,8 +116,6 @@ class Monolith:
         return np.array(speeds[1::2]), np.array(voltages)
 
     def phase(self, now, state, times, together):
-        """Flight or contact up to its end."""
-
         def end(t, z):
             return self.parting(z) if together else z[2] - z[0]
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from orchestrate import SpeedControl, SpeedGradient, couple, passage
+from orchestrate import SpeedControl, SpeedGradient, passage
 
 from .coupled import BEAM, QUICK
 from .monolithic import Monolith
@@ -64,13 +64,3 @@ def test_a_run_has_the_voltages_and_speeds_of_the_plain_simulation(
         assert (found.voltage.min() >= 0.0) and found.voltage.max() == 1.8
         assert float(found.passage_time) < 150.0
         assert found.speed[-200:].mean() == pytest.approx(1.5, abs=2e-3)
-
-
-def test_a_machine_that_is_captured_gets_across():
-    """Switched on at once the motor hangs at the resonance; swung, it passes."""
-    asked = {"voltage": 8.73, "duration": 5.0, "progress": False}
-    at_once = couple(*WEAK, speed_start=0.0, **asked)
-    swung = couple(*WEAK, control=SWING, **asked)
-    assert np.isnan(at_once.passage_time) and at_once.speed[-1] < 101.0
-    assert float(swung.passage_time) < 4.0 and swung.speed[-1] > 120.0
-    assert swung.no_jump.values.tolist() == ["a controller sets the voltage"] * 2

@@ -51,7 +51,6 @@ def native(tmp_path, here):
 
 
 def error(run, truth):
-    """Largest error of both displacements at the times of the truth, m."""
     every = (run.sizes["time"] - 1) // (len(TIMES) - 1)
     both = np.column_stack([run.x1.values, run.x2.values])[::every]
     return np.abs(both - truth).max()
@@ -181,16 +180,6 @@ def test_a_course_is_a_cubic_for_a_shaker_that_takes_one(kinks):
         values = [one[name].values[:: 2**i] for i, one in enumerate(runs)]
         first, _, last = (np.abs(a - b).max() for a, b in zip(values, values[1:], strict=False))
         assert first < 1e-3 * np.abs(values[0]).max() and first / last > least
-
-
-def test_an_electrodynamic_shaker_of_ours_is_coupled_with_its_limits():
-    shaker = orchestrate.Shaker.from_file("shaker_100N").replace(voltage_limit=2.0)
-    run = {"duration": 0.5, "progress": False, "record": ["current", "voltage", "limited"]}
-    run |= {"inputs": {"command": (FINE, 4.0 * np.sin(60.0 * FINE))}}
-    coarse, fine = (orchestrate.cosimulate(STRUCTURE, shaker, step=h, **run) for h in (4e-3, 2e-3))
-    assert float(abs(coarse.voltage).max()) == pytest.approx(2.0)
-    assert coarse.limited.values.any() and not coarse.limited.values.all()
-    assert float(fine.coupling_error.max()) < 0.4 * float(coarse.coupling_error.max())
 
 
 def test_a_drive_without_states_is_said_to_begin_anew(drive, monkeypatch):

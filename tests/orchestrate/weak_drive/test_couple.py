@@ -7,7 +7,6 @@ import pytest
 
 from orchestrate import couple, couple_all, jump_voltages
 from orchestrate.constants import TURN
-from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.averaged import folds
 from orchestrate.weak_drive.connection import MOTOR
 from orchestrate.weak_drive.couple import schedule_from_arguments, scheme_from_arguments
@@ -31,19 +30,6 @@ def run(system, voltage, rate=None, **more):
     step = more.pop("step", 0.2)
     ends = np.multiply(voltage, volts).tolist()
     return couple(*system, voltage=ends, step=step and step / omega, progress=False, **more)
-
-
-def test_a_jump_on_a_ramp_is_late_by_the_rate_to_two_thirds():
-    """At rate 0 it is at the fold of the averaged theory."""
-    quick, rates, asked = QUICK.as_bonded(), (1e-4, 3e-5), {"back": False, "hold": 0.0}
-    ramps = [run(quick, (1.535, 1.62), rate, speed_start=0.0, **asked) for rate in rates]
-    found = [float(each.eta0[np.argmax(each.Omega.values > 1.45)]) for each in ramps]
-    assert found == pytest.approx([1.606, 1.593], abs=5e-4)
-    lags = np.array([[1.0, rate ** (2 / 3)] for rate in rates])
-    assert np.linalg.solve(lags, found)[0] == pytest.approx(1.5831, abs=2e-3)
-    assert ramps[0].averaged_jumps[0] == pytest.approx(1.58306, abs=1e-5)
-    beyond, divides = ramps[0].time > ramps[0].passage_time, averaged.bonded_dividing_speed(*quick)
-    assert ramps[0].Omega[beyond].min() > divides > ramps[0].Omega[~beyond][:-1].max()
 
 
 def test_a_run_up_begins_below_the_resonance():
@@ -72,22 +58,6 @@ def test_energy_balance_of_a_whole_run():
     assert abs(end.missing) < 1e-6 * end.motor and end.defect_sizes < 1e-6 * end.motor
     assert found.attrs["missing_over_motor_work"] == end.missing / end.motor
     assert min(end.dampers, end.box_damper, end.impact_loss) > 0.0
-
-
-def test_units_follow_the_system():
-    """The same numbers for a structure ten times as fast and twice as heavy."""
-    structure, drive = QUICK
-    other = structure.replace(m1=2 * structure.m1, m2=2 * structure.m2, d1=20 * structure.d1)
-    other = other.replace(d2=20 * structure.d2, k1=200 * structure.k1, k2=200 * structure.k2)
-    numbers = {name: getattr(drive, name)(structure) for name in ("beta", "b", "Omega_b", "D_b")}
-    numbers["epsilon"] = drive.epsilon
-    faster = type(drive).nondimensional(**numbers, structure=other, length=1e-3, motor_constant=0.5)
-    expected = run(QUICK, 1.5, duration=100.0)
-    found = couple(other, faster, voltage=1.5 * 5.0, duration=10.0, step=0.02, progress=False)
-    units = {"speed": 10.0, "time": 0.1, "amplitude": 1e-3, "motor": faster.energy(other)}
-    units |= {"box_acceleration": 0.1, "eta0": 1.0, "Omega": 1.0}
-    for name, unit in units.items():
-        assert found[name].values / unit == pytest.approx(expected[name].values, rel=1e-6), name
 
 
 def test_each_of_many_runs_is_that_of_couple():

@@ -45,10 +45,9 @@ def test_lines_of_both_structures():
     """
     short = {"jobs": 1, "rate": RATE, "hold": HOLD, "revolutions": 32, "progress": False}
     quick = drive_spectra(*QUICK, points=256, **short)
-    bonded, parted = (
-        quick.acceleration.sel(kind=kind, mass=1) for kind in ("bonded", "delaminated")
-    )
-    (glued, opened) = (float(quick.speed.sel(kind=one)) for one in ("bonded", "delaminated"))
+    parts = [quick.sel(kind=kind) for kind in ("bonded", "delaminated")]
+    bonded, parted = (one.acceleration.sel(mass=1) for one in parts)
+    glued, opened = (float(one.speed) for one in parts)
     up, _ = averaged.folds(*QUICK)
     for speed in (glued, opened):  # the default voltage is at the resonance
         half = 0.5 * averaged.relative_amplitude(*QUICK, up.Omega)

@@ -25,7 +25,6 @@ pytestmark = pytest.mark.usefixtures("exported")
 
 
 def run(folder, does="NOTHING", fmi=3, has_states=False, **more):
-    """A run with a drive that does something."""
     drive = replace(DRIVE, fmi=fmi, does=does, has_states=has_states)
     more = {"connect": drive.connect, "parameters": drive.parameters, **RUN, **more}
     return orchestrate.cosimulate(STRUCTURE, drive.write(folder), **more)
@@ -33,7 +32,6 @@ def run(folder, does="NOTHING", fmi=3, has_states=False, **more):
 
 @pytest.fixture(params=[2, 3])
 def form(request, here):
-    """FMI 2.0 and 3.0, in this process."""
     return request.param
 
 

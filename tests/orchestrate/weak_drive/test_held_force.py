@@ -32,7 +32,6 @@ pytestmark = pytest.mark.usefixtures("exported")
 
 
 def shaker(mass, stiffness=0.055, damping=0.0055):
-    """An electrodynamic shaker with a table of a mass."""
     numbers = {"mass": mass, "stiffness": stiffness, "damping": damping}
     return table_drive({**numbers, "bl": 1.0, "r": 1.0, "l": 0.1})
 
@@ -54,7 +53,6 @@ def system_of(name, letters, folder, exported):
 
 
 def error(run, truth):
-    """Largest error of both displacements, m."""
     every = (len(TIMES) - 1) // (run.sizes["time"] - 1)
     both = np.column_stack([run.x1.values, run.x2.values])
     return np.abs(both - truth[::every]).max()

@@ -6,14 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrate.weak_drive import hysteresis
-from orchestrate.weak_drive.hysteresis import (
-    LOST,
-    NONE,
-    UNDECIDED,
-    HeldPoint,
-    HysteresisLoop,
-    Jump,
-)
+from orchestrate.weak_drive.hysteresis import LOST, NONE, UNDECIDED, HeldPoint, HysteresisLoop, Jump
 from orchestrate.weak_drive.ramp_record import RampRecord, jump_labels
 from orchestrate.weak_drive.schedule import Ramp
 
@@ -90,19 +83,16 @@ class Scripted(HysteresisLoop):
         return HeldPoint(voltage, speed, self.own_error, {"motion": motion}, time=1.0)
 
     def course(self):
-        """The jumps between 1.5 and 1.56."""
         return self.find_jumps(self.at(1.5), 1.56)
 
 
-@pytest.mark.parametrize(
-    ("length", "bracket"), [(1.02e-4 * 128, 0.51e-4), (0.98e-4 * 128, 0.98e-4)]
-)
+@pytest.mark.parametrize(("length", "bracket"), [(1.02e-4, 0.51e-4), (0.98e-4, 0.98e-4)])
 def test_a_jump_is_bracketed_within_the_width(length, bracket):
     def higher(motion, before, voltage):
         return 0.1 if voltage > 1.506 or (motion and voltage > 1.5) else 0.0
 
     loop = Scripted(higher)
-    (jump,) = loop.find_jumps(loop.at(1.5), 1.5 + length)
+    (jump,) = loop.find_jumps(loop.at(1.5), 1.5 + 128 * length)
     assert jump.outcome == LOST and jump.low < 1.506 <= jump.high
     assert jump.high - jump.low == pytest.approx(bracket)
 
@@ -184,12 +174,10 @@ def test_a_voltage_that_is_left_out_is_not_tried_again(monkeypatch):
 @pytest.mark.parametrize(("error", "widths"), [(0.0, 33), (0.0, 31), (1e-5, 33)])
 def test_each_threshold_of_what_a_lost_motion_comes_to(error, widths):
     """Another one from ``widths`` past the step on, in both directions; or one that is near."""
+    far = 1e-4 * widths
     for sign in (1.0, -1.0):
-        loop = Scripted(
-            lambda *now, sign=sign: (
-                -0.02 if now[0] or -1.0 < sign * (now[2] - 1.521) / 1e-4 < widths else 0.1
-            )
-        )
+        lost = lambda *now, k=sign: now[0] or -1e-4 < k * (now[2] - 1.521) < far  # noqa: E731
+        loop = Scripted(lambda *now, lost=lost: -0.02 if lost(*now) else 0.1)
         low, high = loop.at(1.521 - sign * 1e-3)._replace(error=error), loop.at(1.521, -0.02)
         assert loop.lands_on_one_motion(low, high) == (widths > 32 and not error)
     for away, is_one in ((4.9e-3, True), (5.1e-3, False)):
@@ -302,7 +290,6 @@ def test_growth_that_takes_more_than_ten_holds_is_left_out(rate, held):
 
 
 def line(*points):
-    """Held points by voltage, speed and error."""
     return [HeldPoint(voltage, speed, error, {}) for voltage, speed, error in points]
 
 
@@ -545,20 +532,17 @@ def record_of(slips):
     time = np.arange(0.0, 2000.0, 5.0)
     eta0 = 1.2 + 1e-4 * time
     slip = np.interp(time, *zip(*slips, strict=True))
-    job = SimpleNamespace(
-        structure=SimpleNamespace(omega=1.0),
-        drive=SimpleNamespace(b=lambda _: 0.1, volts=lambda _: 1.0),
-        schedule=Ramp(1.2, 1.4, 1e-4, back=False),
-    )
+    drive = SimpleNamespace(b=lambda _: 0.1, volts=lambda _: 1.0)
+    own = {"structure": SimpleNamespace(omega=1.0), "drive": drive}
+    job = SimpleNamespace(**own, schedule=Ramp(1.2, 1.4, 1e-4, back=False))
     return time, RampRecord(job, {"time": time, "voltage": eta0, "speed": eta0 - slip}, up=True)
 
 
 def test_where_a_ramp_shows_a_jump():
     """Late, where the slip falls from that before to that after; not at all if the ramp ends."""
     time, ramp = record_of([(0, 0.03), (800, 0.03), (900, 0.01), (2000, 0.01)])
-    before, half, after = np.interp(
-        ramp.rows_of_jump(1.26, 1.2601, 1.23, 1.2501), range(len(time)), time
-    )
+    rows = ramp.rows_of_jump(1.26, 1.2601, 1.23, 1.2501)
+    before, half, after = np.interp(rows, range(len(time)), time)
     assert before == pytest.approx(810.0, abs=15.0)
     assert half == pytest.approx(850.0, abs=15.0) and after == pytest.approx(890.0, abs=15.0)
     assert np.isnan(ramp.rows_of_jump(1.26, 1.2601, 1.23, 1.2901)).all()

@@ -8,7 +8,6 @@ import pytest
 
 from orchestrate import couple
 from orchestrate.errors import FmuError, InputError
-from orchestrate.weak_drive.energy_balance import EnergyBalance
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.revolutions import Revolutions
 
@@ -26,7 +25,7 @@ SYSTEMS = {  # with voltage, speed and the fewest impacts
     "inductive": (QUICK.with_lag(0.3), 1.5, 1.25, 5),  # current and torque lag behind
     "bonded": (QUICK.as_bonded().with_lag(3.0), 1.5, 1.25, 0),
 }
-TIME, FINE = 30.0, 15_000
+TIME, FINE = 30.0, 6_000
 
 
 class Case:
@@ -106,17 +105,6 @@ def test_the_control_keeps_the_error_by_the_tolerance(name):
     assert error < (0.7 if name == "quick" else 0.05) * case.run(Scheme(0.1), columns=(0, 2))[0]
 
 
-def test_losses_of_the_balance_are_those_of_the_dampers():
-    """The structure's losses from the exchange, against the integral of d v^2."""
-    system = QUICK.as_bonded()
-    with master(system, Scheme(0.05), rest(1.2)) as m:
-        record = m.run([1.5] * 400)
-    dampers = EnergyBalance(system.structure).add_record(record).dampers[-1]
-    powers = (system.structure.d1 + system.structure.d2) * record["v1"] ** 2
-    simpson = powers[0] + 4 * powers[1:-1:2].sum() + 2 * powers[2:-1:2].sum() + powers[-1]
-    assert dampers == pytest.approx(0.05 / 3 * simpson, rel=1e-6) and dampers > 0.0
-
-
 def test_gaps_that_never_close_or_open():
     """Pressed so much that it never parts it is the bonded one, which ignores a clearance."""
     short = {"voltage": 1.5, "speed_start": 1.25, "duration": 60.0, "jobs": 1, "progress": False}
@@ -125,11 +113,6 @@ def test_gaps_that_never_close_or_open():
         size = np.abs(bonded[name].values).max()
         assert pressed[name].values == pytest.approx(bonded[name].values, abs=1e-9 * size), name
     assert abs(pressed.missing[-1]) < 1e-6 * pressed.motor[-1]
-    states = []
-    for system in (QUICK, OPEN, PRESSED):
-        with master(system.as_bonded(), Scheme(0.1), rest(1.25)) as m:
-            states.append(m.run([1.5] * 200).columns.tobytes())
-    assert states[0] == states[1] == states[2]
 
 
 def test_all_forms_give_the_same_bits():

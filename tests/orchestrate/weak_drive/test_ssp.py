@@ -111,19 +111,17 @@ def test_package(tmp_path):
         assert path.read_bytes() == again.read_bytes()
         tree, *sets = parts(path)
         assert word in tree.find("ssd:System", SPACE).get("description")
-        values = {
-            one.get("name"): one[0].get("value")
-            for tree in sets
-            for one in tree.iterfind(".//ssv:Parameter", SPACE)
-        }
+        told = [one for each in sets for one in each.iterfind(".//ssv:Parameter", SPACE)]
+        values = {one.get("name"): one[0].get("value") for one in told}
         assert values["voltage"] == "1.5" and values["speed_start"] == "1.25"
         assert values.get("bonded") == (None if word == "delaminated" else "true")
     components = tree.findall(".//ssd:Component", SPACE)
-    sources = {one.get("name"): one.get("source") for one in components}
-    assert sources["oscillator"] == "resources/TwoMassImpactOscillator.fmu"
-    assert sources["shaker"] == "resources/MotorShaker.fmu"
-    assert not tree.findall("ssd:System/ssd:Connectors", SPACE)
-    assert not tree.findall("ssd:System/ssd:ParameterBindings", SPACE)
+    assert {one.get("name"): one.get("source") for one in components} == {
+        "oscillator": "resources/TwoMassImpactOscillator.fmu",
+        "shaker": "resources/MotorShaker.fmu",
+    }
+    for name in ("Connectors", "ParameterBindings"):
+        assert not tree.findall(f"ssd:System/ssd:{name}", SPACE)
     used = {
         (component.get("name"), port.get("name")): port.find("ssc:Real", SPACE).get("unit")
         for component in components
@@ -145,9 +143,8 @@ def test_package(tmp_path):
     (solver,) = tree.iterfind(f".//{{{NAMESPACES['oms']}}}SimulationInformation")
     assert dict(solver.attrib)["fixedStepSize"] == "0.00004"
     assert float(solver[0].get("stepSize")) == 4e-5
-    assert tree.find("ssd:System/ssd:Annotations/ssc:Annotation", SPACE).get("type") == (
-        "org.openmodelica"
-    )
+    annotation = tree.find("ssd:System/ssd:Annotations/ssc:Annotation", SPACE)
+    assert annotation.get("type") == "org.openmodelica"
 
 
 @pytest.mark.parametrize("version", ["1.0", "2.0"])

@@ -29,6 +29,7 @@ def thirds(count, scatter, rise, earlier=0.0):
 
 LAST = 1.049 / 2.049, 1.051 / 2.051  # the limit is 0.49 and 0.51 of the tolerance off
 NEVER = (np.nan, 0.0)
+SPREAD = (1e-6 + 0.5e-6 / 9.0) ** 0.5
 
 
 @pytest.mark.parametrize(
@@ -49,10 +50,7 @@ NEVER = (np.nan, 0.0)
         (thirds(47, 1e-3, 0.0), NEVER),
         (thirds(48, 2e-5, 0.98e-4), (1.3 + 0.98e-4 / 3.0, 1e-4)),  # the tolerance
         (thirds(48, 2e-5, 1.02e-4), NEVER),
-        (
-            thirds(48, 1e-3, 0.50e-3),
-            (1.3 + 0.5e-3 / 3.0, (1e-6 + 0.25e-6 * 2.0 / 9.0) ** 0.5),
-        ),  # `scatter`
+        (thirds(48, 1e-3, 0.50e-3), (1.3 + 0.5e-3 / 3.0, SPREAD)),  # `scatter`
         (thirds(48, 1e-3, 0.53e-3), NEVER),
         (thirds(120, 1e-3, 0.0, 0.1), (1.3, 1e-3)),  # the later half alone,
         (thirds(120, 1e-3, 0.53e-3), NEVER),  # and all of it

@@ -26,13 +26,11 @@ WIDE = {  # of what users may enter
 
 
 def random_sets(count, seed=SEED, ranges=RANGES):
-    """Structures with their drives, each number uniform in its range."""
     rng = np.random.default_rng(seed)
     return [made({name: rng.uniform(*ends) for name, ends in ranges.items()}) for _ in range(count)]
 
 
 def made(v):
-    """A structure and its drive by the numbers of ``RANGES``."""
     m1, omega = v["m1"], v["omega"]
     k1, m2 = m1 * omega**2, v["mu"] * m1
     dampers = {"d1": 2.0 * v["D1"] * omega * m1, "d2": 2.0 * v["D2"] * omega * m2}

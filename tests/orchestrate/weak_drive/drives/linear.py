@@ -60,7 +60,6 @@ class LinearDrive:
         return {"box_force": force + self.names[0], **motions}
 
     def write(self, folder, name="Linear"):
-        """Write the FMU."""
         places = {f"p{i}": i for i in range(30)} | {"does": 32, "has_states": 33}
         rows = [(one, i, "parameter", 'start="0"') for one, i in places.items()]
         rows += [(one, 30 + i, "input", 'start="0"') for i, one in enumerate(self.names[:2])]
@@ -75,7 +74,6 @@ class LinearDrive:
         return path
 
     def ability(self, state):
-        """Attributes of co-simulation."""
         flag = str(self.has_states).lower()
         return (
             'modelIdentifier="linear" canHandleVariableCommunicationStepSize="true" '
@@ -83,7 +81,6 @@ class LinearDrive:
         )
 
     def description3(self, rows):
-        """The description of FMI 3.0."""
         variables = "".join(f"<Float64 {attributes(*row)} {more}/>" for *row, more in rows)
         time = 'name="time" valueReference="99" causality="independent" variability="continuous"'
         outputs = "".join(f'<Output valueReference="{row[1]}"/>' for row in rows[-3:])
@@ -96,7 +93,6 @@ class LinearDrive:
         )
 
     def description2(self, rows):
-        """The description of FMI 2.0."""
         variables = "".join(
             f"<ScalarVariable {attributes(*row)}><Real {more}/></ScalarVariable>"
             for *row, more in rows
@@ -111,7 +107,6 @@ class LinearDrive:
 
 
 def attributes(name, reference, causality):
-    """Attributes of a variable."""
     kind = "fixed" if causality == "parameter" else "continuous"
     text = f'name="{name}" valueReference="{reference}" causality="{causality}"'
     return f'{text} variability="{kind}"'
@@ -119,7 +114,6 @@ def attributes(name, reference, causality):
 
 @functools.cache
 def library(fmi):
-    """The library of all linear drives of an FMI version."""
     path = Path(tempfile.mkdtemp()) / f"linear{sharedLibraryExtension}"
     line = ["cc", "-O2", "-shared", "-fPIC", f"-DFMI={fmi}", "-o", path, SOURCE, "-lm"]
     subprocess.run([*map(str, line)], check=True)
@@ -201,5 +195,4 @@ def table_drive(n):
 
 
 def sine(amplitude=20.0, rate=26.0):
-    """A command over time."""
     return lambda time: amplitude * math.sin(rate * time)
