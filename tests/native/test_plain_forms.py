@@ -11,20 +11,15 @@ from orchestrate.response.response_loop import response_loop
 
 from ..fmu.event_driven import CUBICS
 from ..fmu.programs.driver import harmonic, open_fmu
-from ..sparing import ordinary
-from .conftest import VERSIONS
+
+pytestmark = pytest.mark.slow  # compiles; sources of a plain form run in test_source_code.py
 
 
-@pytest.fixture(scope="module", params=ordinary(VERSIONS, ["fmi3"]))
-def version(request):
-    return request.param
-
-
-@pytest.fixture(scope="module")
-def plain(version, tmp_path_factory):
+@pytest.fixture
+def plain(version, tmp_path):
     """The oscillator's plain FMU of an FMI version."""
-    form, build = f"{version}-plain", tmp_path_factory.mktemp("plain")
-    return forms.export("TwoMassImpactOscillator", form, build, (this_machine(),))
+    form = f"{version}-plain"
+    return forms.export("TwoMassImpactOscillator", form, tmp_path, (this_machine(),))
 
 
 def test_an_importer_that_knows_real_alone_runs_a_plain_form(plain, fmus, version):

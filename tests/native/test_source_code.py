@@ -140,7 +140,7 @@ def test_a_description_of_sources_alone_is_true(without_binaries, fmus):
             assert not found.coSimulation.needsExecutionTool
 
 
-@pytest.mark.parametrize("form", ordinary(["fmi3-sources", "fmi2-sources", "fmi2-plain-sources"]))
+@pytest.mark.parametrize("form", ordinary(["fmi2-plain-sources", "fmi3-sources", "fmi2-sources"]))
 def test_a_bare_compiler_makes_the_bits_of_the_binary(without_binaries, form, tmp_path, reference):
     """And no name is exported that is not FMI's: the C library has functions of the same names."""
     version = form[:4]

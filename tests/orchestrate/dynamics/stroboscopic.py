@@ -2,7 +2,14 @@
 
 import numpy as np
 
-from orchestrate.fmu import OSCILLATOR, EventInstance, find_or_export, start_motion
+from orchestrate.fmu import OSCILLATOR, STATE, EventInstance, find_or_export, start_motion
+
+
+def after(instance, point, start, periods=1):
+    """State some periods after a start, in an instance that is there."""
+    start_motion(instance, *point, start)
+    instance.step(0.0, periods * point.excitation.period)
+    return np.array(instance.get(*STATE))
 
 
 def flown(structure, excitation, states, periods=1):

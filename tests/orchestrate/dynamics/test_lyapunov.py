@@ -19,36 +19,17 @@ from orchestrate.dynamics.lyapunov import (
 from orchestrate.dynamics.lyapunov_spectrum import kaplan_yorke_dimension, lyapunov_spectrum
 from orchestrate.dynamics.variational import deviation_matrices_and_contacts, period_in_tau
 from orchestrate.errors import InputError
-from orchestrate.fmu import (
-    OSCILLATOR,
-    REST,
-    STATE,
-    EventInstance,
-    Instance,
-    find_or_export,
-    start_motion,
-)
+from orchestrate.fmu import REST
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
+
+from .stroboscopic import after
 
 make = Structure.nondimensional
 PAPER = make()
 LOSSY = make(D1=0.05, D2=0.02, kappa=1.5)
 PUSHED = {"force1": 0.3, "force2": -0.4, "box_acceleration": 0.1}
-
-
-@pytest.fixture(scope="module")
-def instances(exported):
-    fmu = find_or_export(OSCILLATOR).path
-    with Instance(fmu) as plain, EventInstance(fmu) as eventful:
-        yield plain, eventful
-
-
-def settled(instance, point, periods):
-    start_motion(instance, *point, REST)
-    instance.step(0.0, periods * point.excitation.period)
-    return np.array(instance.get(*STATE))
 
 
 @pytest.mark.parametrize(
@@ -61,20 +42,15 @@ def settled(instance, point, periods):
 def test_it_agrees_with_two_neighbours_of_the_fmu(instances, eta, pushes, expected):
     plain, eventful = instances
     point, periods = Point(PAPER, Excitation.nondimensional(eta, PAPER, **pushes)), 400
-    start, span = settled(plain, point, 3000), period_in_tau(eta)
+    start, span = after(plain, point, REST, 3000), period_in_tau(eta)
     impacts = simulate_nondimensional_impacts(eventful, point, start, periods)
     exponent, error = exponent_from_impacts(impacts, periods * span, point)
     here, growth = start, 0.0
     shift = 1e-8 * np.array([0.5, -0.5, 0.5, 0.5]) * np.abs(start).max()
     scale = np.linalg.norm(shift)
 
-    def a_period(state):
-        start_motion(plain, *point, state)
-        plain.step(0.0, span)
-        return np.array(plain.get(*STATE))
-
     for _ in range(periods):
-        there, here = a_period(here + shift), a_period(here)
+        there, here = after(plain, point, here + shift), after(plain, point, here)
         distance = np.linalg.norm(there - here)
         growth += math.log(distance / scale)
         shift = (there - here) * scale / distance
@@ -163,7 +139,7 @@ def test_a_qr_method_gives_the_same(instances):
     """Benettin's method, one impact after the other, in chaotic motion."""
     point, end = Point(PAPER, Excitation.nondimensional(0.8, PAPER)), 600 * period_in_tau(0.8)
     impacts = simulate_nondimensional_impacts(
-        instances[1], point, settled(instances[0], point, 300), 600
+        instances[1], point, after(instances[0], point, REST, 300), 600
     )
     found = lyapunov_spectrum(impacts, end, point, 40, 8)
     frame, sums = np.eye(4), np.zeros(4)

@@ -40,7 +40,7 @@ def draw_of_kind(random, kind):
 
 
 KINDS = {  # how many orbits, and the kinds of nodes among them
-    **{"two masses": (6, {0, 1, 2}), "box at rest": (2, {0}), "wall": (5, {0, 1, 2})},
+    **{"two masses": (10, {0, 1, 2}), "box at rest": (2, {0}), "wall": (8, {0, 1, 2})},
     **{"play": (8, set(range(6))), "wall and play": (6, {0, 1, 2, 3})},
 }
 

@@ -12,18 +12,12 @@ from orchestrate.dynamics.variational import (
     deviation_matrices_and_contacts,
     period_in_tau,
 )
-from orchestrate.fmu import (
-    OSCILLATOR,
-    REST,
-    STATE,
-    EventInstance,
-    Instance,
-    find_or_export,
-    start_motion,
-)
+from orchestrate.fmu import REST
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.threshold import threshold_amplitudes
+
+from .stroboscopic import after
 
 make = Structure.nondimensional
 ALIKE = (make(), make(e=0.3), make(D=0.05), make(mu=1.5, kappa=2.1))
@@ -38,13 +32,6 @@ UNLIKE = (
 )
 
 
-@pytest.fixture(scope="module")
-def instances(exported):
-    fmu = find_or_export(OSCILLATOR).path
-    with Instance(fmu) as plain, EventInstance(fmu) as eventful:
-        yield plain, eventful
-
-
 def pushed_point(structure, eta, size):
     """The box's motion, with forces and gravity of some size beside its own."""
     level = size * structure.omega**2
@@ -55,22 +42,12 @@ def pushed_point(structure, eta, size):
     return Point(structure, Excitation.nondimensional(eta, structure, **pushes))
 
 
-def after(instance, point, start, periods=1):
-    start_motion(instance, *point, start)
-    instance.step(0.0, periods * point.excitation.period)
-    return np.array(instance.get(*STATE))
-
-
 def differences(instance, point, start, periods):
     """Central differences of the state after some periods: the matrix through the FMU alone."""
-    step = 1e-7 * np.abs(start / point.state_units).max()
-    columns = [
-        (after(instance, point, start + d, periods) - after(instance, point, start - d, periods))
-        for d in step * np.diag(point.state_units)[moving(point)]
-    ]
-    return (
-        np.array(columns).T[moving(point)] / point.state_units[moving(point), None] / (2.0 * step)
-    )
+    step = 1e-7 * np.abs(start / point.scale).max()
+    moves = step * np.diag(point.scale)[moving(point)]
+    ends = [[after(instance, point, start + k * d, periods) for d in moves] for k in (1, -1)]
+    return np.subtract(*ends).T[moving(point)] / point.scale[moving(point), None] / (2.0 * step)
 
 
 def moving(point):

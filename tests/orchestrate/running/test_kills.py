@@ -94,7 +94,7 @@ QUESTIONS: Mapping[str, tuple[int, Ask]] = {  # with the items of a chunk
     "DetectJob": (1, detect),
 }
 SLOW = {"JumpVoltagesJob", "CaptureJob", "DriveBranchJob", "DetectJob", "PlanJob", "BorderJob"}
-SLOW |= {"FitJob"}
+SLOW |= {"FitJob", "BranchJob", "ManifoldJob"}
 
 
 def kinds_of_questions() -> set[type[Job]]:

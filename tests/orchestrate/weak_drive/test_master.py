@@ -25,7 +25,7 @@ SYSTEMS = {  # with voltage, speed and the fewest impacts
     "inductive": (QUICK.with_lag(0.3), 1.5, 1.25, 5),  # current and torque lag behind
     "bonded": (QUICK.as_bonded().with_lag(3.0), 1.5, 1.25, 0),
 }
-TIME, FINE = 30.0, 6_000
+TIME, FINE = 30.0, 15_000
 
 
 class Case:

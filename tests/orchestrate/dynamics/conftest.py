@@ -1,0 +1,13 @@
+"""What the tests of dynamics share."""
+
+import pytest
+
+from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, find
+
+
+@pytest.fixture(scope="module")
+def instances(exported):
+    """The oscillator without events, and with them."""
+    fmu = find(OSCILLATOR).path
+    with Instance(fmu) as plain, EventInstance(fmu) as eventful:
+        yield plain, eventful
