@@ -11,7 +11,7 @@ from .driver import FMUS
 from .programs.driver import free_all
 
 FORMS = list(FMUS)
-NUMBERS = ("energy", "forces", "guarantees", "importers", "motion", "outputs")
+NUMBERS = ("chattering", "energy", "forces", "guarantees", "importers", "motion", "outputs")
 
 
 @pytest.fixture(scope="session", autouse=True)

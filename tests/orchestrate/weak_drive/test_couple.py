@@ -37,6 +37,7 @@ def test_a_run_up_begins_below_the_resonance():
     found = run(QUICK.as_bonded(), (1.45, 1.65), 1e-4, back=False)
     up = found.sel(jump="up")
     assert up.jumps == pytest.approx(1.58310, abs=1.5e-4)
+    assert up.averaged_jumps == pytest.approx(1.58306, abs=1e-5)
     assert up.ramp_voltage == pytest.approx(1.606, abs=1e-3)
     assert up.jump_lag == pytest.approx(float(up.ramp_voltage - up.jumps), abs=1e-9)
     assert up.jump_rate == pytest.approx(1e-4, rel=1e-2)
