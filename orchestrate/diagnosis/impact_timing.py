@@ -57,16 +57,16 @@ class TimingSettings:
     opposite: float = -0.95
     together: float = 0.0
     order2: float = 0.025  # parts of some percent of the mass make 0.014, a stop 0.022
-    # growth of the stiffness over order 2, from rest: where the place stays faces make up to 0.07,
-    # stops 0.5 or more; a half that meets a slow one 0.9, but from shut faces -0.22 or less, stops
-    # -0.13 or more; clamps that lift make -0.18 or less before `at_end` (faces -0.09 or more) or an
-    # order 2 of 0.5 (0.37); a slow half that a moving one strikes up to 1.5, a stop from 1.8
+    # growth of the stiffness over order 2, from rest: faces make up to 0.2, a half that meets a slow
+    # one or strikes it up to 1.5, at the stroke's end; stops 0.45 or more, but from shut faces -0.2
+    # or more, such faces -0.32 or less. Clamps that lift make -0.18 or less before `at_end` (faces
+    # -0.09 or more) or an order 2 of 0.5 (0.37)
     softens: float = -0.13
     lifts: float = 0.43
     at_end: float = 0.8
-    stiffens: float = 0.1
+    stiffens: float = 0.25
     stiffens_moving: float = 1.5
-    softer: float = -0.17  # from shut faces
+    softer: float = -0.26  # from shut faces
     middle: float = 0.6  # share of the windows for the spread: one by itself is chance
     spread: float = 0.15  # of the place, over the stroke: stops and play make 0.07, gaps 0.28
     # see `rest_frequency_and_stiffness`: windows up to this factor from the loud ones' frequency,
@@ -76,7 +76,8 @@ class TimingSettings:
     quiet: int = 8
     prior: float = 1e-6
     known: float = 0.03  # error of a frequency that is known
-    stiffer: float = 1.06  # frequency while something strikes, over that of the faces shut
+    slower: float = 0.83  # frequency over that of shut faces: clamps make 0.81, parted faces 0.86
+    stiffer: float = 1.06
 
 
 TIMING = TimingSettings()
@@ -118,20 +119,20 @@ class Strikes:
           not on one side of the period by `one_sided`; "kinks" below `blow`; "something small
           strikes" with an order 2 below `order2`.
         - "stop" if the stiffness grows with the stroke, over order 2, by more than `stiffens`
-          (`stiffens_moving` where the place moves by `spread`), unless it stays `softer` than shut
-          faces; or, where it strikes before `at_end` of the stroke, falls by more than `softens` or
-          makes an order 2 above `lifts`: a clamp.
-        - "faces strike" with a known frequency, up to `stiffer`, unless two sensors hear blows that
-          are `together`; else "stop or softer face".
+          (`stiffens_moving` where it strikes from `at_end` of the stroke on, at a place that moves
+          by `spread`), unless it stays `softer` than shut faces; or, where it strikes before that,
+          falls by more than `softens` or makes an order 2 above `lifts`: a clamp.
+        - "faces strike" with a known frequency, from `slower` to `stiffer` times it, unless two
+          sensors hear blows that are `together`; else "stop or softer face".
         """
         is_blow, is_locked = self.blow > settings.blow, self.locked >= settings.locked
         if not self.heard > (settings.faint if is_locked else settings.rattles):
             return NOTHING
         if self.base > max(settings.base * self.heard, settings.faint):
             return "base strikes"
-        moves = self.spread >= settings.spread
-        stiffens = settings.stiffens_moving if moves else settings.stiffens
         before_end = abs(self.place) < settings.at_end
+        moves = self.spread >= settings.spread and not before_end
+        stiffens = settings.stiffens_moving if moves else settings.stiffens
         softens = before_end and self.stiffens < settings.softens
         lifts = before_end and self.order2 > settings.lifts
         if is_locked and is_blow and self.opposite < settings.opposite and not softens:
@@ -142,7 +143,8 @@ class Strikes:
             "kinks": is_blow,
             "something small strikes": self.order2 >= settings.order2,
             STOP: self.stiffens <= stiffens and not softens and not lifts,
-            SOFTER: self.stiffness <= settings.stiffer and not self.opposite > settings.together,
+            SOFTER: settings.slower <= self.stiffness <= settings.stiffer
+            and not self.opposite > settings.together,
         }
         return next((word for word, holds in limits.items() if not holds), FACES)
 
