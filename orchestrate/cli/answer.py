@@ -156,7 +156,7 @@ class FunctionCommand(Command):
         paths = [Path(name) for text in getattr(self, "overlay", []) for name in text.split(",")]
         if not paths:
             return []
-        from ..show.overlay import explain_border_mismatch, explain_mismatch
+        from ..show.overlay import explain_border_mismatch, explain_branch_mismatch
 
         branches = [load_earlier_result("--overlay", path) for path in paths]
         parameters = structure.parameters()
@@ -171,7 +171,7 @@ class FunctionCommand(Command):
             over = question.get("over") or ("eta" if "eta" in question else "frequency")
             if self.calls == "resonance":  # of both
                 parameters.pop("bonded")
-            explain = partial(explain_mismatch, over=over, parameters=parameters)
+            explain = partial(explain_branch_mismatch, over=over, parameters=parameters)
         for path, branch in zip(paths, branches, strict=True):
             if why := explain(branch):
                 raise InputError(f"--overlay {path}: {why}")

@@ -153,7 +153,7 @@ alone may miss one whose basin is small."""
         yield from printing.table_lines({**columns, "found at": found})
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
-        from ..show.planes import draw_motions
+        from ..show.planes import draw_phase_curves
 
         data = results[""]
         name = printing.varied_parameter_name(data)
@@ -163,7 +163,7 @@ alone may miss one whose basin is small."""
         at = at.isel(attractor=at.multiplicity.notnull().values)
         periods = at.multiplicity.astype(int).where(at.multiplicity > 0, 60)  # irregular: 60
         pairs = zip(at.state, periods.values, strict=True)
-        return draw_motions(
+        return draw_phase_curves(
             at, [simulate_from_state(at, state, int(count)) for state, count in pairs]
         )
 

@@ -224,9 +224,9 @@ class ResultFiles:
             fresh = arguments.force or resumed or not result.exists()
         chosen = str(arguments.read_units()).replace(", ", "-").replace("/", "_")
         if size := arguments.size or "":
-            from ..show.figure_files import slide_shape  # brings Matplotlib
+            from ..show.figure_files import parse_slide_shape  # brings Matplotlib
 
-            slide_shape(size)
+            parse_slide_shape(size)
         files = cls(result, formats, plots, fresh, chosen, size, over)
         others = [*files.table_paths(), *files.picture_paths()]
         existing = [path for path in others if existing_table_files(path)]
@@ -265,9 +265,9 @@ class ResultFiles:
         paths = self.picture_paths(*endings)
         missing = [path for path in paths if self.fresh or not path.exists()]
         if missing:
-            from ..show.figure_files import for_slides, save, slide_shape
+            from ..show.figure_files import parse_slide_shape, resize_for_slide, save
 
-            figure = for_slides(draw(), slide_shape(self.size))
+            figure = resize_for_slide(draw(), parse_slide_shape(self.size))
             dpi = {"dpi": figure.dpi} if self.size else {}
             save(figure, paths[0].with_suffix(""), [path.suffix[1:] for path in missing], **dpi)
         for path in paths:

@@ -32,7 +32,7 @@ ERROR_LIMIT = 1e-6  # of the motor's work: larger errors give a warning
 def draw_couple(
     title: str, results: Runs, job: CoupleJob, branches: xr.Dataset | None = None
 ) -> Any:
-    from ..show.passage import draw_over_time
+    from ..show.passage import draw_passage_histories
     from ..show.weak_drive import draw_ramps
     from ..weak_drive import averaged, own_resonance
     from ..weak_drive.schedule import Ramp
@@ -40,7 +40,7 @@ def draw_couple(
     system = job.structure, job.drive
     if job.control or not isinstance(job.schedule, Ramp):
         resonance = own_resonance.dividing_speed(*system) * job.structure.omega
-        return draw_over_time(results, resonance, title)
+        return draw_passage_histories(results, resonance, title)
     units = display_units_of(next(iter(results.values())))
     under = None if branches is None else with_units(branches, units)
     return draw_ramps(results, with_units(averaged.stationary_curve(*system), units), under, title)
@@ -205,20 +205,20 @@ class Passage(Only, OfSchedule, OfController, Stepped, DriveCommand, OfBoth):
         return structure, motor, question
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
-        from ..show.passage import draw_passage
+        from ..show.passage import draw_passage_with_spectra
 
         shown = {state: first_stored_interval(data) for state, data in results.items()}
         spectra = {"revolutions": self.revolutions, "mass": self.mass}
         falls = {state: orchestrate.waterfall(data, **spectra) for state, data in shown.items()}
-        return draw_passage(shown, falls, self.picture_title(results))
+        return draw_passage_with_spectra(shown, falls, self.picture_title(results))
 
     def all_summary_lines(self, results: Runs) -> Iterator[str]:
-        from ..show.passage import format_jumps
+        from ..show.passage import format_jumps_or_passage
 
         for state, data in results.items():
             ends = f"{float(data.time[0]):.4g} s to {float(data.time[-1]):.4g} s"
             samples = f"{data.sizes['time']} samples, {ends} ({data.attrs['kept']})"
-            yield f"{state}: {format_jumps(data)}; {samples}"
+            yield f"{state}: {format_jumps_or_passage(data)}; {samples}"
 
 
 class JumpVoltages(OfRamp, Over, Stepped, DriveCommand, Stored, OfBoth):

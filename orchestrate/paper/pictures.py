@@ -67,7 +67,7 @@ PARTS = {
         "motion.",
         "Started from the up-sweep's response at eta = 0.4; one period, states sampled inside the "
         "FMU and both sides of each impact.",
-        planes.draw_states,
+        planes.draw_phase_curves_by_state,
     ),
     "6": orbit_diagram_section("6", ORBITS["6"]),
     "7": curves_section(
@@ -83,13 +83,13 @@ PARTS = {
         "8",
         "Typical phase curves in the first irregular region 0.43 < eta < 1.37; T, nT: periodic.",
         CURVES,
-        planes.draw_phase_grid,
+        planes.draw_relative_phase_curves,
     ),
     "9": curves_section(
         "9",
         "Typical phase curves in the second irregular region 2.61 < eta < 3.77; T, nT: periodic.",
         CURVES,
-        planes.draw_phase_grid,
+        planes.draw_relative_phase_curves,
     ),
     "10": orbit_diagram_section("10", ORBITS["10"]),
     "11": orbit_diagram_section("11", ORBITS["11"]),
@@ -100,7 +100,7 @@ PARTS = {
         "plastic impact, low internal damping. Solid: mass 1, dotted: mass 2; a jump is an impact.",
         "The peak of each up-sweep's largest xi_Rel is found, and its response followed for one "
         "more period.",
-        planes.draw_masses,
+        planes.draw_phase_curves_of_masses,
     ),
     "lyapunov": Section(
         "Largest Lyapunov exponent",

@@ -12,8 +12,8 @@ from ..flags import flag_word
 from ..lazy import xr
 from ..model.ranges import EXCITATION, STRUCTURE
 from ..units import OVER_OMEGA, display_scale_of, in_display_units
-from .kinds import required_kind
-from .labels import plain_title
+from .kinds import require_kind
+from .labels import expand_title
 from .page import Section, Table, format_number
 from .plot import plot
 
@@ -34,7 +34,9 @@ ORIGIN = {  # attributes, and what a reader calls them
 
 
 def title_of(answer: xr.Dataset) -> str:
-    return plain_title(str(answer.attrs.get("title") or required_kind(answer)), structure=False)
+    return expand_title(
+        str(answer.attrs.get("title") or require_kind(answer)), with_structure=False
+    )
 
 
 def answer_section(answer: xr.Dataset) -> Section:
@@ -73,7 +75,10 @@ def signs_section(answer: xr.Dataset) -> Section:
     rows = [
         (
             str(one.meaning.values),
-            *(format_sensors(one[name].values) for name in ("value", "floor", "sound_highest")),
+            *(
+                format_values_by_sensor(one[name].values)
+                for name in ("value", "floor", "sound_highest")
+            ),
             " · ".join(WORDS[int(number)] for number in one.exceeds.values),
         )
         for one in known
@@ -94,7 +99,7 @@ def signs_section(answer: xr.Dataset) -> Section:
     return Section("Signs that need no model", [text], moved, plot(answer), caption, [table])
 
 
-def format_sensors(values: Iterable[float]) -> str:
+def format_values_by_sensor(values: Iterable[float]) -> str:
     return " · ".join(format_number(float(value)) for value in values)
 
 

@@ -11,12 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..units import in_display_units
-from .analysis import note_hidden
+from .analysis import note_curves_below_axis
 from .colours import BESIDES_RED, BLACK, BLUE, GREEN, GREY, ORANGE, RED
 from .kinds import draws
-from .labels import plain_title
+from .labels import expand_title
 from .scales import label_with_unit, typeset_array_unit
-from .style import draw_line, legend_below, make_panels, styled, use_plain_log
+from .style import add_figure_legend, draw_line, make_panels, set_plain_log_scale, styled
 
 SENSOR_TITLES = {"acceleration1": "sensor 1", "acceleration2": "sensor 2", "motor": "motor"}
 FITS = (BLUE, ORANGE, GREEN)  # of the delaminated, of the best sound structure, of the bonded one
@@ -30,7 +30,7 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     """Draw delamination signs as bars relative to noise and to a sound structure's values."""
     known = (data.exceeds >= 0).any("channel")
     left_out = [str(text) for text in data.meaning.values[~known.values]]
-    title, data = title or plain_title(str(data.attrs["title"])), data.isel(sign=known)
+    title, data = title or expand_title(str(data.attrs["title"])), data.isel(sign=known)
     size = (8.0, 1.6 + 0.32 * max(data.sizes["sign"], 1))
     figure, (axes,) = make_panels(1, 1, size, title)
     ratio = (data.value / np.fmax(data.floor, data.sound_highest)).where(data.exceeds >= 0)
@@ -42,7 +42,7 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
         values, label = ratio.sel(channel=channel).values, SENSOR_TITLES.get(channel, channel)
         colour = BESIDES_RED[number % len(BESIDES_RED)]
         axes.barh(positions, np.nan_to_num(values), share, color=colour, label=label)
-        write_values(axes, positions, values, data.value.sel(channel=channel).values, limit)
+        write_values_at_bars(axes, positions, values, data.value.sel(channel=channel).values, limit)
     lines: Any = {"linewidth": 1.0, "zorder": 3}
     axes.axvline(1.0, color=GREY, label="noise and a sound structure", **lines)
     axes.axvline(limit, color=RED, linestyle="--", label="from here it stands out", **lines)
@@ -53,27 +53,27 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     axes.grid(visible=False, axis="y")
     axes.set_xlabel("sign over what noise and a sound structure show of it")
     lacking = textwrap.fill(f"not in this record: {', '.join(left_out)}", 100)
-    legend_below(figure, [axes], 4, title=lacking if left_out else None)
+    add_figure_legend(figure, [axes], 4, title=lacking if left_out else None)
     return figure
 
 
-def write_values(
-    axes: Axes, place: np.ndarray, ratios: np.ndarray, values: np.ndarray, least: float
+def write_values_at_bars(
+    axes: Axes, y: np.ndarray, ratios: np.ndarray, values: np.ndarray, min_x: float
 ) -> None:
     """Write each sign's own value at the end of its bar, or that the record lacks it."""
-    for y, ratio, value in zip(place, ratios, values, strict=True):
+    for height, ratio, value in zip(y, ratios, values, strict=True):
         known = np.isfinite(ratio)
         text = f"{value:.3g}" if known else "not in this record"
-        x = float(ratio) if known and ratio > least else least  # lines are left of it
+        x = float(ratio) if known and ratio > min_x else min_x  # lines are left of it
         offset: Any = {"xytext": (3, 0), "textcoords": "offset points", "zorder": 4}
         colour = BLACK if known else GREY
-        axes.annotate(text, (x, y), va="center", fontsize=7, color=colour, **offset)
+        axes.annotate(text, (x, height), va="center", fontsize=7, color=colour, **offset)
 
 
 @draws("plan_test")
 @styled
-def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
-    title = title or plain_title(str(data.attrs["title"]))
+def draw_test_plan(data: xr.Dataset, title: str = "") -> Figure:
+    title = title or expand_title(str(data.attrs["title"]))
     figure, (axes,) = make_panels(1, 1, (8.0, 3.8), title)
     data = in_display_units(data)
     right = data.decides.values > 0
@@ -92,7 +92,7 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
         axes.annotate(f" {words}", (level, 0.02), **place)
     axes.set(xscale="log", yscale="log", ylabel="strikes over the limit of noise")
     axes.set_xlabel(label_with_unit("level of the box", data.level))
-    legend_below(figure, [axes], 4)
+    add_figure_legend(figure, [axes], 4)
     return figure
 
 
@@ -104,7 +104,7 @@ def draw_orders_and_fits(data: xr.Dataset, title: str = "") -> Figure:
     rows, columns = data.sizes["order"], len(channels)
     size, title = (1.5 + 6.0 * columns, 0.9 + 1.9 * rows), title or data.attrs.get("title", "")
     figure, axes = make_panels(rows, columns, size, str(title), sharex=True)
-    shown = best_fits(data)
+    shown = names_of_best_fits(data)
     for place, plane in enumerate(axes):
         at = data.isel(order=place // columns).sel(channel=channels[place % columns])
         plane.plot(at.frequency, at.measured, ".", color=BLACK, markersize=3.0, label="measured")
@@ -119,14 +119,16 @@ def draw_orders_and_fits(data: xr.Dataset, title: str = "") -> Figure:
         known = at.measured.values[at.measured.values > 0.0]
         if len(known):  # the decades of what was measured
             plane.set_ylim(0.3 * np.quantile(known, 0.02), 3.0 * known.max())
-        note_hidden(plane, {name: [y] for name, y in curves.items() if np.isfinite(y).any()})
+        note_curves_below_axis(
+            plane, {name: [y] for name, y in curves.items() if np.isfinite(y).any()}
+        )
         if place % columns == 0:
             plane.set_ylabel(f"order {float(at.order):g}\nin {typeset_array_unit(data.measured)}")
         if place < columns:
             plane.set_title(SENSOR_TITLES.get(channels[place], channels[place]))
     for plane in axes[-columns:]:
         plane.set_xlabel(label_with_unit("frequency of the excitation", data.frequency))
-    legend_below(figure, axes, 3)
+    add_figure_legend(figure, axes, 3)
     return figure
 
 
@@ -140,7 +142,7 @@ def with_hypothesis_dimension(data: xr.Dataset) -> xr.Dataset:
     return data.drop_vars(list(fitted)).merge(one.expand_dims(hypothesis=[name]))
 
 
-def best_fits(data: xr.Dataset) -> list[str]:
+def names_of_best_fits(data: xr.Dataset) -> list[str]:
     order = np.argsort(data.misfit.values, kind="stable")
     ordered = [str(name) for name in data.hypothesis.values[order]]
     parted = [name for name in ordered if name.startswith(PARTED)][:1]
@@ -152,13 +154,13 @@ def best_fits(data: xr.Dataset) -> list[str]:
 def draw_misfit(data: xr.Dataset, title: str = "") -> Figure:
     figure, (axes,) = make_panels(1, 1, (8.0, 3.4), title or str(data.attrs.get("title", "")))
     data = in_display_units(data)
-    for number, name in enumerate(best_fits(data)):
+    for number, name in enumerate(names_of_best_fits(data)):
         one = data.sel(hypothesis=name)
         words = f"{name}: {float(one.misfit):.3g}"
         draw_line(axes, one.frequency, one.misfit_at, "-", FITS[number % len(FITS)], 1.0, words)
     axes.axhline(1.0, color=GREY, linewidth=0.8)
-    use_plain_log(axes)
+    set_plain_log_scale(axes)
     across = label_with_unit("frequency of the excitation", data.frequency)
     axes.set(xlabel=across, ylabel="misfit over its usual size")
-    legend_below(figure, [axes], 2)
+    add_figure_legend(figure, [axes], 2)
     return figure

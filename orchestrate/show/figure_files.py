@@ -33,7 +33,7 @@ def png_size(png: bytes) -> dict[str, int]:
     return {"width": width, "height": height}
 
 
-def slide_shape(size: str) -> tuple[float, float] | None:
+def parse_slide_shape(size: str) -> tuple[float, float] | None:
     """Return width and height of a shape such as ``16:9``; None of an empty one."""
     try:
         width, height = map(float, size.split(":")) if size else (1.0, 1.0)
@@ -44,7 +44,7 @@ def slide_shape(size: str) -> tuple[float, float] | None:
     return (width, height) if size else None
 
 
-def for_slides(figure: Figure, shape: tuple[float, float] | None) -> Figure:
+def resize_for_slide(figure: Figure, shape: tuple[float, float] | None) -> Figure:
     """Give a figure the shape of a slide, if any, so small that its letters are large on it."""
     if shape is None:
         return figure

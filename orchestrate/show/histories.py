@@ -16,9 +16,17 @@ from . import labels
 from .colours import BLACK, BLUE, GREY, RED
 from .kinds import BONDED, draws
 from .planes import gap_through_impacts, relative_motion
-from .scales import acceleration_scale, frequency_scale, in_unit, length_scale
+from .scales import acceleration_scale, append_unit, frequency_scale, length_scale
 from .spectra import acceleration_spectrum, draw_stems
-from .style import XI_REL, draw_line, legend_above, make_panels, set_title, styled, write_in_panel
+from .style import (
+    XI_REL,
+    add_legend_above,
+    draw_line,
+    make_panels,
+    set_title,
+    styled,
+    write_in_empty_panel,
+)
 
 LAYOUT: list[Any] = [["masses", "phases"], ["gap", "relative"], ["force", "spectrum"]]
 MASSES: tuple[tuple[str, dict[str, Any]], ...] = (
@@ -33,7 +41,7 @@ MIN_PERIODS = 4  # periods that a spectrum takes
 COLUMNS = 400  # of an envelope
 
 
-@draws("simulate", beside=BONDED)
+@draws("simulate", partner=BONDED)
 @styled
 def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
     figure = Figure(figsize=(10.4, 6.8), layout="constrained")
@@ -42,7 +50,7 @@ def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = N
     largest = {name: float(np.abs(data[name]).max()) for name in ("x1", "x2", "v1", "v2")}
     factor, unit = length_scale(data, max(largest["x1"], largest["x2"]))
     pace, speed_unit = length_scale(data, max(largest["v1"], largest["v2"]), "m/s")
-    turns, instants = time_axis(data, data)
+    turns, instants = time_values_and_label(data, data)
     time, gap, gap_rate = gap_through_impacts(data)
     for number, style in MASSES:
         axes["masses"].plot(turns, data[f"x{number}"] / factor, **style)
@@ -55,37 +63,37 @@ def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = N
     if float(data.contact_force.max()):
         draw_line(axes["force"], turns, data.contact_force, "-", BLACK, 1.0)
     else:
-        write_in_panel(axes["force"], "no permanent contact")
-    top = draw_spectrum(axes["spectrum"], data, MASSES)
+        write_in_empty_panel(axes["force"], "no permanent contact")
+    top = draw_acceleration_spectra(axes["spectrum"], data, MASSES)
     if bonded is not None:
-        axes["masses"].plot(time_axis(data, bonded)[0], bonded.x1 / factor, **GLUED)
+        axes["masses"].plot(time_values_and_label(data, bonded)[0], bonded.x1 / factor, **GLUED)
         axes["phases"].plot(bonded.x1 / factor, bonded.v1 / pace, **GLUED)
         alike = with_units(bonded, display_units_of(data))  # one axis has one unit
-        top = max(top, draw_spectrum(axes["spectrum"], alike, (("1", GLUED),)))
+        top = max(top, draw_acceleration_spectra(axes["spectrum"], alike, (("1", GLUED),)))
     axes["spectrum"].set_ylim(SPECTRUM_FLOOR * (top or 1.0), 2.0 * (top or 1.0))
-    axes["masses"].set_ylabel(in_unit("displacement", unit))
-    axes["gap"].set_ylabel(in_unit(labels.gap_name(data), unit))
+    axes["masses"].set_ylabel(append_unit("displacement", unit))
+    axes["gap"].set_ylabel(append_unit(labels.gap_name(data), unit))
     axes["force"].set(ylabel="contact force in N", xlabel=instants, xlim=(turns[0], turns[-1]))
     for name, place, rate in (
         ("phases", "displacement", "velocity"),
         ("relative", "gap", "gap velocity"),
     ):
-        axes[name].set(xlabel=in_unit(place, unit), ylabel=in_unit(rate, speed_unit))
+        axes[name].set(xlabel=append_unit(place, unit), ylabel=append_unit(rate, speed_unit))
     for name, columns in (("masses", 3), ("gap", 1)):
         axes[name].sharex(axes["force"])
         axes[name].tick_params(labelbottom=False)
-        legend_above(axes[name], columns)
+        add_legend_above(axes[name], columns)
     return figure
 
 
-def time_axis(data: xr.Dataset, motion: xr.Dataset) -> tuple[np.ndarray, str]:
+def time_values_and_label(data: xr.Dataset, motion: xr.Dataset) -> tuple[np.ndarray, str]:
     """Return a motion's times in the display unit (periods or s), and the axis label."""
     if display_units_of(data).time == "s":
         return motion.time.values, "time in s"
     return motion.periods_done.values, "time in periods, $t/T$"
 
 
-def draw_spectrum(
+def draw_acceleration_spectra(
     axes: Axes, data: xr.Dataset, masses: Iterable[tuple[str, dict[str, Any]]]
 ) -> float:
     """Draw amplitude spectra of accelerations in the box; return the largest amplitude."""
@@ -93,7 +101,7 @@ def draw_spectrum(
     periods = float(turns[-1] - turns[0])
     if periods < MIN_PERIODS:
         if not axes.texts:
-            write_in_panel(axes, f"a spectrum takes {MIN_PERIODS} periods")
+            write_in_empty_panel(axes, f"a spectrum takes {MIN_PERIODS} periods")
             axes.set_xticks([])
         return 0.0
     base, top = periods / (time[-1] - time[0]), 0.0
@@ -114,29 +122,32 @@ def draw_spectrum(
         width = STEM_WIDTHS[style["color"]]
         draw_stems(axes, lines[peaks], felt_amplitude[peaks], floor, width, **stem)
     unit = f"in {word}" if labels.has_frequency_unit(data) else r"over $\Omega/2\pi$"
-    axes.set(xlabel=f"frequency {unit}", ylabel=in_unit("acceleration", unit_felt))
+    axes.set(xlabel=f"frequency {unit}", ylabel=append_unit("acceleration", unit_felt))
     return top
 
 
-@draws("shake", beside=BONDED)
+@draws("shake", partner=BONDED)
 @styled
 def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
     words = str(data.attrs.get("excitation_description") or data.attrs["excitation"])
-    title = title or f"{labels.in_shown_units(data, words)}; {labels.title_from_attributes(data)}"
+    title = (
+        title
+        or f"{labels.convert_accelerations_in(words, data)}; {labels.title_from_attributes(data)}"
+    )
     heights: Any = {"sharex": True, "height_ratios": (1.0, 1.6, 1.2, 1.2)}
     figure, (box, masses, gap, impacts) = make_panels(4, 1, (10.4, 7.2), title, **heights)
     scale, unit = acceleration_scale(data)
-    draw_what_drives(data, box)
-    draw_gap_impacts(data, gap, impacts)
+    draw_excitation(box, data)
+    draw_gap_and_impacts(data, gap, impacts)
     for number, colour in (("1", BLUE), ("2", RED)):
         style: Any = {"color": colour, "label": f"mass {number}", "alpha": 0.55}
         draw_signal(masses, data, f"a{number}_abs", scale, **style)
     if bonded is not None:
-        time, low, high = local_extremes(bonded.time.values, bonded.a1_abs.values / scale)
+        time, low, high = signal_envelope(bonded.time.values, bonded.a1_abs.values / scale)
         draw_line(masses, time, high, "-", BLACK, 0.9, "both, bonded")
         draw_line(masses, time, low, "-", BLACK, 0.9)
-    masses.set_ylabel(in_unit("acceleration\nof masses", unit))
-    legend_above(masses, 3)
+    masses.set_ylabel(append_unit("acceleration\nof masses", unit))
+    add_legend_above(masses, 3)
     impacts.set(xlabel="time in s", xlim=(0.0, float(data.time[-1])))
     return figure
 
@@ -148,14 +159,14 @@ def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
     count = (4 if "x1" in data else 1) + len(names)
     title = title or f"{data.attrs['drive']}; {labels.title_from_attributes(data)}"
     figure, rows = make_panels(count, 1, (10.4, 1.2 + 1.6 * count), title, sharex=True)
-    draw_what_drives(data, rows[0])
+    draw_excitation(rows[0], data)
     if "x1" in data:
-        draw_gap_impacts(data, rows[2], rows[3])
+        draw_gap_and_impacts(data, rows[2], rows[3])
         factor, unit = length_scale(data, float(abs(data.x1).max()))
         for name, colour in (("x1", BLUE), ("x2", RED)):
             draw_signal(rows[1], data, name, factor, color=colour, label=f"mass {name[1]}")
-        rows[1].set_ylabel(in_unit("displacement", unit, "\n"))
-        legend_above(rows[1], 2)
+        rows[1].set_ylabel(append_unit("displacement", unit, "\n"))
+        add_legend_above(rows[1], 2)
     for axes, name in zip(rows[count - len(names) :], names, strict=True):
         draw_signal(axes, data, name, 1.0, color=BLACK)
         unit = str(data[name].attrs["units"])
@@ -164,38 +175,39 @@ def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
     return figure
 
 
-def draw_what_drives(data: xr.Dataset, box: Axes) -> None:
+def draw_excitation(panel: Axes, data: xr.Dataset) -> None:
     if force := next((name for name in ("force1", "force2") if name in data), ""):
-        draw_signal(box, data, force, 1.0, color=BLACK)
-        box.set_ylabel(f"force on\nmass {force[-1]} in N")
+        draw_signal(panel, data, force, 1.0, color=BLACK)
+        panel.set_ylabel(f"force on\nmass {force[-1]} in N")
     else:
         scale, unit = acceleration_scale(data)
-        draw_signal(box, data, "box_acceleration", scale, color=BLACK)
-        box.set_ylabel(in_unit("acceleration\nof box", unit))
+        draw_signal(panel, data, "box_acceleration", scale, color=BLACK)
+        panel.set_ylabel(append_unit("acceleration\nof box", unit))
 
 
-def draw_gap_impacts(data: xr.Dataset, gap: Axes, impacts: Axes) -> None:
+def draw_gap_and_impacts(data: xr.Dataset, gap: Axes, impacts: Axes) -> None:
     factor, unit = length_scale(data, float(data.x_rel.max()))
     draw_signal(gap, data, "x_rel", factor, color=BLACK)
-    gap.set_ylabel(in_unit("gap", unit))
+    gap.set_ylabel(append_unit("gap", unit))
     impacts.set_ylabel("impulse in N s")
     if count := data.sizes["impact"]:
         size = 5 if count < COLUMNS else 2
         impacts.plot(data.impact_time, data.impulse, ".", color=RED, markersize=size)
         impacts.set_ylim(bottom=0.0)
     else:
-        write_in_panel(impacts, "no impacts")
+        write_in_empty_panel(impacts, "no impacts")
 
 
-def draw_signal(axes: Axes, data: xr.Dataset, name: str, factor: float, **style: Any) -> None:
-    time, values = data[data[name].dims[0]].values, data[name].values / factor
+def draw_signal(axes: Axes, data: xr.Dataset, name: str, divisor: float, **style: Any) -> None:
+    """Draw a signal as a line; a long one as the area between its extremes."""
+    time, values = data[data[name].dims[0]].values, data[name].values / divisor
     if len(time) <= 5000:
         axes.plot(time, values, linewidth=1.0, **{**style, "alpha": 1.0})
     else:
-        axes.fill_between(*local_extremes(time, values), linewidth=0.4, **style)
+        axes.fill_between(*signal_envelope(time, values), linewidth=0.4, **style)
 
 
-def local_extremes(
+def signal_envelope(
     time: np.ndarray, values: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Split a signal into equal parts; return each part's time, smallest and largest value."""

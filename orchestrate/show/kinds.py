@@ -12,17 +12,17 @@ from ..errors import InputError
 
 Drawer = TypeVar("Drawer", bound=Callable[..., Figure])
 DRAW: dict[str, Callable[..., Figure]] = {}  # by kind: the function that made the result
-TOGETHER: dict[str, str] = {}  # what belongs into one picture with a result of this kind
+PARTNERS: dict[str, str] = {}  # by kind: what may be in one picture with it
 MORE, BRANCHES = "more of them", "branches"
 BONDED, OTHER = "the bonded structure's", "the other structure's"
 
 
-def draws(*kinds: str, beside: str = "") -> Callable[[Drawer], Drawer]:
-    """Register a function as what draws results of some kinds, and what else may be with them."""
+def draws(*kinds: str, partner: str = "") -> Callable[[Drawer], Drawer]:
+    """Return a decorator that registers what draws results of some kinds, and who may join them."""
 
     def register(draw: Drawer) -> Drawer:
         DRAW.update(dict.fromkeys(kinds, draw))
-        TOGETHER.update(dict.fromkeys(kinds, beside))
+        PARTNERS.update(dict.fromkeys(kinds, partner))
         return draw
 
     return register
@@ -36,7 +36,7 @@ def kind_of(answer: Any) -> str:
     return str(attributes.get("question") or attributes.get("analysis") or before)
 
 
-def required_kind(answer: Any) -> str:
+def require_kind(answer: Any) -> str:
     kind = kind_of(answer)
     if not kind:
         what = type(answer).__name__

@@ -32,7 +32,7 @@ SYMBOLS = {
     "x_rel": "gap $x_2 - x_1$ in m",
     "v_rel": r"gap velocity $\dot{x}_2 - \dot{x}_1$ in m/s",
 }
-PUSHED = {
+LOADS = {
     "box_acceleration": "{:.4g} m/s$^2$ more of the box",
     **{f"force{half}": f"$F_{half}$ = {{:.4g}} N" for half in "12"},
 }
@@ -48,8 +48,8 @@ ACCELERATION = re.compile(r"(\d[\d.e+-]*) m/s2")
 PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
-def symbol(name: str) -> str:
-    """Return a parameter's mathematical symbol for an axis; without one, its name with unit."""
+def symbol_with_unit(name: str) -> str:
+    """Return a parameter's symbol, such as ``$a$ in m``, for an axis; without one, its name."""
     unit = STRUCTURE[name].unit if name in STRUCTURE else "1"
     ending = f" in {unit}" if unit != "1" else ""
     return SYMBOLS.get(name, name.replace("_", " ") + ending)
@@ -57,18 +57,18 @@ def symbol(name: str) -> str:
 
 def format_parameters(values: Mapping[str, float]) -> str:
     """Format a dict of parameters as a title text, ``e = 0.7, D = 0.005``."""
-    return join(format_parameter(name, f"{value:g}") for name, value in values.items())
+    return join_by_commas(format_parameter(name, f"{value:g}") for name, value in values.items())
 
 
 def format_parameter(name: str, number: str) -> str:
     """Format one parameter with its symbol and unit; damping ratios in per cent."""
-    letter, _, unit = symbol(name).partition(" in ")
+    letter, _, unit = symbol_with_unit(name).partition(" in ")
     if name.startswith("zeta"):
         number, unit = f"{100.0 * float(number):.4g}", "%"
     return f"{letter} = {number} {unit}".rstrip()
 
 
-def join(parts: Iterable[str]) -> str:
+def join_by_commas(parts: Iterable[str]) -> str:
     """Join the parts of a title that are not empty by commas."""
     return ", ".join(filter(None, parts))
 
@@ -91,8 +91,8 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
     added = [] if bonded else [name for name in ADDED if known.get(name) and name not in shown]
     texts += [format_added_parameter(name, known[name], data) for name in added]
     texts.append("bonded" if bonded else "against a wall" if known.get("wall") else "")
-    excitation = format_excitation(data, known).items()
-    return join([*texts, *(words for name, words in excitation if name not in shown)])
+    excitation = excitation_texts(data, known).items()
+    return join_by_commas([*texts, *(words for name, words in excitation if name not in shown)])
 
 
 def branch_title(data: xr.Dataset, over: Iterable[str]) -> str:
@@ -101,12 +101,12 @@ def branch_title(data: xr.Dataset, over: Iterable[str]) -> str:
     points = {key: data[key] for key in (name, "amplitude") if key in data.coords}
     if {"frequency", "amplitude"} <= set(points):
         points["level"] = points["amplitude"] * points["frequency"] ** 2
-    held = {key: float(values[0]) for key, values in points.items() if is_constant(values)}
-    if "amplitude" in held:
-        held.pop("level", None)
-    shaken = format_excitation(data, held).items()
+    constant = {key: float(values[0]) for key, values in points.items() if is_constant(values)}
+    if "amplitude" in constant:
+        constant.pop("level", None)
+    texts = excitation_texts(data, constant).items()
     structure = title_from_attributes(data, {*varied, "eta", "frequency", "amplitude"})
-    return join([structure, *(text for name, text in shaken if name not in varied)])
+    return join_by_commas([structure, *(text for name, text in texts if name not in varied)])
 
 
 def has_frequency_unit(data: xr.Dataset) -> bool:
@@ -157,7 +157,7 @@ def format_frequency(data: xr.Dataset, frequency: float) -> str:
     return f"{letter} = {frequency / factor:.5g} {word}"
 
 
-def format_excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:
+def excitation_texts(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:
     units, texts = display_units_of(data), {}
     if "eta" in known:
         omega = omega_of(data)
@@ -169,7 +169,7 @@ def format_excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str,
         texts["frequency"] = format_frequency(data, known["frequency"])
     if "amplitude" in known and units.acceleration and "frequency" in known:
         texts["amplitude"] = format_level(data, known["amplitude"] * known["frequency"] ** 2)
-    elif known.get("amplitude") and not is_papers_amplitude(data, known):
+    elif known.get("amplitude") and not is_paper_amplitude(data, known):
         texts["amplitude"] = f"$a$ = {format_length(data, known['amplitude'])}"
     elif "level" in known:
         texts["level"] = format_level(data, known["level"])
@@ -177,11 +177,11 @@ def format_excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str,
         level = (data.amplitude * data.frequency**2).values
         if math.isclose(level.min(), level.max(), rel_tol=1e-9):
             texts["amplitude"] = format_level(data, level.max())
-    pushed = {name: known[name] for name in PUSHED if known.get(name)}
-    return texts | {name: PUSHED[name].format(value) for name, value in pushed.items()}
+    loads = {name: known[name] for name in LOADS if known.get(name)}
+    return texts | {name: LOADS[name].format(value) for name, value in loads.items()}
 
 
-def is_papers_amplitude(data: xr.Dataset, known: Mapping[str, float]) -> bool:
+def is_paper_amplitude(data: xr.Dataset, known: Mapping[str, float]) -> bool:
     """Return whether the amplitude is 1/eta^2 m, so that displacements are the paper's ratios."""
     eta = known.get("eta", known.get("frequency", math.nan) / omega_of(data))
     return shows_lengths_as_ratios(data) and math.isclose(
@@ -230,7 +230,7 @@ def format_halves(known: Mapping[str, float]) -> str:
         damping.append(rf"$\zeta_{half}$ = {50.0 * d / math.sqrt(k * m):.4g} %")
     mu = known["m2"] / known["m1"]  # 1 of one mass
     masses = "" if mu == USUAL_VALUES["mu"] else format_parameters({"mu": mu})
-    return join([*frequencies, *damping, masses])
+    return join_by_commas([*frequencies, *damping, masses])
 
 
 def format_period(multiplicity: int) -> str:
@@ -245,21 +245,22 @@ def orbit_label(multiplicity: float, impacts_per_period: float) -> str:
     return f"{n if n > 1 else ''}T, {impacts} impact{'s' * (impacts != 1)}" if n else ""
 
 
-def in_shown_units(data: xr.Dataset, text: str) -> str:
+def convert_accelerations_in(text: str, data: xr.Dataset) -> str:
+    """Return a text with its accelerations, ``5 m/s2``, in the display unit of a dataset."""
     factor, word = display_scale_of(data, "m/s2")
     unit = typeset_unit(word)
     return ACCELERATION.sub(lambda match: f"{float(match[1]) / factor:.4g} {unit}", text)
 
 
-def plain_title(title: str, structure: bool = True) -> str:
+def expand_title(title: str, with_structure: bool = True) -> str:
     """Return a title with the structure's file-name label in words, or without it."""
     words, _, rest = title.rpartition(": ")
     label, comma, ending = rest.partition(", ")
     parts = [PART_OF_LABEL.fullmatch(part) for part in label.split("_")]
     if not words or not all(parts):
         return title
-    written = [expand_label_part(part) for part in parts if part] if structure else []
-    return join([words, *written]) + comma + ending
+    written = [expand_label_part(part) for part in parts if part] if with_structure else []
+    return join_by_commas([words, *written]) + comma + ending
 
 
 def expand_label_part(part: re.Match[str]) -> str:
@@ -271,4 +272,6 @@ def expand_label_part(part: re.Match[str]) -> str:
         return format_added_parameter("clearance", float(part["values"]), xr.Dataset())
     numbers = [""] if len(values) == 1 else range(1, 1 + len(values))
     named = zip(numbers, values, strict=True)
-    return join(format_parameter(f"{part['name']}{number}", value) for number, value in named)
+    return join_by_commas(
+        format_parameter(f"{part['name']}{number}", value) for number, value in named
+    )

@@ -22,8 +22,14 @@ from .colours import BESIDES_RED, BLACK, BLUE, DIRECTIONS, GREY, RED, STRUCTURES
 from .kinds import BRANCHES, MORE, draws
 from .labels import branch_title, format_voltage, orbit_label, title_from_attributes
 from .overlay import Overlay, draw_bifurcations, draw_orbits, length_factors
-from .scales import axis_values, displayed_gaps, gap_scale, parameter_scale, varied_dimension
-from .style import draw_line, legend_below, make_panels, styled
+from .scales import (
+    axis_values,
+    displayed_gaps,
+    gap_scale_and_label,
+    parameter_scale_and_label,
+    varied_dimension,
+)
+from .style import add_figure_legend, draw_line, make_panels, styled
 
 MAX_DISTINCT = 600  # values along an axis at which marks can be distinguished
 CELLS = (1500, 750)  # of a panel, for samples that lie on each other
@@ -53,7 +59,9 @@ def marker_keywords(count: int, marks: MarkStyle) -> dict[str, Any]:
     return {**style, "marker": "o", "markersize": size, "markerfacecolor": "none"}
 
 
-def one_per_cell(axes: Axes, x: np.ndarray, samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def choose_one_sample_per_cell(
+    axes: Axes, x: np.ndarray, samples: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Return one sample's index per occupied cell of a panel, and the samples in each cell."""
     columns, rows = CELLS
     column = cell_index(axes.xaxis, x, columns)
@@ -82,7 +90,7 @@ def draw_samples(
     if len(x) <= MAX_DISTINCT:
         axes.plot(np.repeat(x, each), gaps, **style, alpha=0.8, label=label)
         return
-    chosen, count = one_per_cell(axes, x, samples)
+    chosen, count = choose_one_sample_per_cell(axes, x, samples)
     ends = [*(minimum for minimum, _ in SHADES[1:]), np.inf]
     for (minimum, opacity), end in zip(SHADES, ends, strict=True):
         of_shade = chosen[(count >= minimum) & (count < end)]
@@ -108,19 +116,22 @@ DIRECTION_MARKS = {  # down lies on up
 }
 
 
-@draws("sweep", beside=BRANCHES)
+@draws("sweep", partner=BRANCHES)
 @styled
 def draw_sweep(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
     """Draw an orbit diagram with all samples (Figures 6, 10, 11), and the impacts below it."""
     figure, (top, bottom) = make_panels(2, 1, (9.6, 6.4), sharex=True, height_ratios=(3, 1))
     parameter = varied_dimension(data.impacts_per_period)
     branches = [Overlay(branch, data, parameter) for branch in overlay]
-    (shown, label), (factor, _) = displayed_gaps(data, data.xi_rel), gap_scale(data, data.xi_rel)
+    (shown, label), (factor, _) = (
+        displayed_gaps(data, data.xi_rel),
+        gap_scale_and_label(data, data.xi_rel),
+    )
     x, name = axis_values(data, parameter)
     low, high = float(x.min()), float(x.max())
     bottom.set_xlim((low, high) if high > low else (low - 0.5, high + 0.5))
-    lines = [branch.gaps(factor).ravel() for branch in branches]
-    set_gap_scale(top, np.concatenate([shown.values.ravel(), *lines]))
+    lines = [branch.gaps_at_phase_0(factor).ravel() for branch in branches]
+    set_gap_axis_scale(top, np.concatenate([shown.values.ravel(), *lines]))
     both = "direction" in data.dims
     usual = MarkStyle(GREY if branches else BLACK)
     for direction in map(str, data.direction.values) if both else ("",):
@@ -131,21 +142,21 @@ def draw_sweep(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] 
         impacts = data.impacts_per_period.sel(part).values
         width = {"up": 2.6, "down": 1.0}.get(direction, 0.8)
         draw_steps(bottom, x, impacts, DIRECTIONS.get(direction, BLACK), width)
-    set_impact_scale(bottom, data.impacts_per_period.values)
+    set_impact_axis_scale(bottom, data.impacts_per_period.values)
     samples_shown = f"$n = {int(data.sample.values[0])}(1){int(data.sample.values[-1])}$"
     words = title or title_from_attributes(data)
     top.set_title(", ".join(filter(None, [words, samples_shown])))
     top.set_ylabel(f"{label}$(nT)$" if label.endswith("$") else f"{label}, at $t = nT$")
     bottom.set(ylabel="impacts per $T$", xlabel=name)
     for branch in branches:
-        branch.draw(top, "xi_rel", factor)
-        branch.mark(top, "xi_rel", factor)
+        branch.draw_orbits(top, "xi_rel", factor)
+        branch.draw_bifurcations(top, "xi_rel", factor)
     if both or branches:
-        legend_below(figure, [top], columns=8 if branches else 4)
+        add_figure_legend(figure, [top], columns=8 if branches else 4)
     return figure
 
 
-def set_gap_scale(axes: Axes, samples: np.ndarray, decades: int = 6) -> None:
+def set_gap_axis_scale(axes: Axes, samples: np.ndarray, decades: int = 6) -> None:
     """Set a logarithmic gap axis that is linear near 0, so that 0 is on it."""
     largest = float(samples.max(initial=0.0))
     if largest <= 0.0:
@@ -165,12 +176,12 @@ def set_gap_scale(axes: Axes, samples: np.ndarray, decades: int = 6) -> None:
     axes.text(1.004, 0.5 * linear, "linear", transform=transform, **text_style)
 
 
-def set_impact_scale(axes: Axes, impacts: np.ndarray) -> None:
+def set_impact_axis_scale(axes: Axes, impacts: np.ndarray) -> None:
     """Choose a linear, symlog or log axis for impacts per period; write "no impacts" if none."""
     above_zero = impacts[impacts > 0.0]
     if not above_zero.size:
         axes.set_ylim(0.0, 1.0)
-        style.write_in_panel(axes, "no impacts")
+        style.write_in_empty_panel(axes, "no impacts")
     elif above_zero.max() < 10.0 * above_zero.min():
         axes.set_ylim(0.0, 1.1 * above_zero.max())
     elif above_zero.size < impacts.size:
@@ -180,17 +191,17 @@ def set_impact_scale(axes: Axes, impacts: np.ndarray) -> None:
         axes.set_yscale("log")
 
 
-@draws("branch", beside=MORE)
+@draws("branch", partner=MORE)
 @styled
 def draw_branch(*branches: xr.Dataset, title: str = "") -> Figure:
     name = str(branches[0].attrs["over"])
     figure, (plane,) = make_panels(1, 1, (9.6, 5.8), title or branch_title(branches[0], [name]))
-    factor, gap = gap_scale(branches[0], branches[0].xi_rel)
+    factor, gap = gap_scale_and_label(branches[0], branches[0].xi_rel)
     scales = [length_factors(branch, factor) for branch in branches]
     samples = [branch.xi_rel.transpose("sample", "point").values for branch in branches]
     gaps = [np.ravel(rows * scale) for rows, scale in zip(samples, scales, strict=True)]
-    set_gap_scale(plane, np.concatenate(gaps))
-    unit, label = parameter_scale(branches[0], name)
+    set_gap_axis_scale(plane, np.concatenate(gaps))
+    unit, label = parameter_scale_and_label(branches[0], name)
     at = np.concatenate([branch[name].values for branch in branches]) / unit
     low, high = float(at.min()), float(at.max())
     edge = 0.01 * (high - low)  # room for markers at the ends
@@ -201,11 +212,11 @@ def draw_branch(*branches: xr.Dataset, title: str = "") -> Figure:
         if branch.sizes.get("bifurcation"):
             at = branch.bifurcation_value.values / unit
             draw_bifurcations(plane, branch, at, "xi_rel", scale)
-    legend_below(figure, [plane], columns=8)
+    add_figure_legend(figure, [plane], columns=8)
     return figure
 
 
-@draws("lyapunov", beside=MORE)
+@draws("lyapunov", partner=MORE)
 @styled
 def draw_lyapunov(*cases: xr.Dataset, title: str = "") -> Figure:
     size = (9.6, 0.6 + 2.2 * len(cases))
@@ -219,7 +230,7 @@ def draw_lyapunov(*cases: xr.Dataset, title: str = "") -> Figure:
         plane.axhline(0.0, color="0.5", linewidth=0.8)
         plane.set(ylabel=r"$\lambda$ per unit of $\tau$", title=words)
     axes[-1].set_xlabel(axis_values(cases[-1], varied_dimension(cases[-1].exponent)).label)
-    legend_below(figure, axes, 6, title="bars: one standard error")
+    add_figure_legend(figure, axes, 6, title="bars: one standard error")
     return figure
 
 
@@ -248,7 +259,7 @@ def draw_attractors(data: xr.Dataset, title: str = "") -> Figure:
     data = data.sortby(varied_dimension(data.number))
     x, name = axis_values(data, varied_dimension(data.number))
     shown, label = displayed_gaps(data, data.xi_rel_max)
-    kinds, words = colours_by_kind(data)
+    kinds, words = orbit_colours_and_labels(data)
     for index in range(data.sizes["attractor"]):
         part = data.isel(attractor=index)
         exists = words[:, index] != ""
@@ -271,11 +282,11 @@ def draw_attractors(data: xr.Dataset, title: str = "") -> Figure:
         bottom.xaxis.set_major_locator(LogLocator(subs=(1.0, 1.5, 2.0, 3.0, 5.0, 7.0)))
         bottom.xaxis.set_major_formatter("{x:g}")
         bottom.xaxis.set_minor_formatter(NullFormatter())
-    legend_below(figure, [top], columns=5)
+    add_figure_legend(figure, [top], columns=5)
     return figure
 
 
-def colours_by_kind(data: xr.Dataset) -> tuple[dict[str, str], np.ndarray]:
+def orbit_colours_and_labels(data: xr.Dataset) -> tuple[dict[str, str], np.ndarray]:
     n, rate = data.multiplicity.values, data.impacts_per_period.values
     words = np.full(n.shape, "", dtype=object)
     for index in zip(*np.nonzero(np.isfinite(n)), strict=True):
@@ -301,19 +312,19 @@ def draw_attractor(
         panel.plot(x, marked, marker, color=colours[word], markersize=3.5, markeredgewidth=0.0)
 
 
-def draw_jumps_over(data: xr.Dataset, over: str, title: str) -> Figure:
-    known = data.jumps.notnull().any(["structure", over])
+def draw_jump_voltages_over(data: xr.Dataset, parameter: str, title: str) -> Figure:
+    known = data.jumps.notnull().any(["structure", parameter])
     jumps = [str(jump) for jump in data.jump.values if known.sel(jump=jump)] or ["up"]
     figure, axes = make_panels(1, len(jumps), (6.0 * len(jumps), 4.5), title)
-    factor, label = parameter_scale(data, over)
+    factor, label = parameter_scale_and_label(data, parameter)
     for panel, jump in zip(axes, jumps, strict=True):
         for structure in map(str, data.structure.values):
             at = data.sel(jump=jump, structure=structure)
             bars: Any = {"yerr": at.standard_error, "color": STRUCTURES[structure], "capsize": 3.0}
-            panel.errorbar(data[over] / factor, at.jumps, fmt="o-", label=structure, **bars)
+            panel.errorbar(data[parameter] / factor, at.jumps, fmt="o-", label=structure, **bars)
         panel.set(xlabel=label, ylabel="voltage at rate 0 in V")
         panel.set_title(f"jump {jump}")
-    legend_below(figure, axes)
+    add_figure_legend(figure, axes)
     return figure
 
 
@@ -321,28 +332,28 @@ def draw_jumps_over(data: xr.Dataset, over: str, title: str) -> Figure:
 @styled
 def draw_jump_voltages(data: xr.Dataset, title: str = "") -> Figure:
     if others := {str(dim) for dim in data.jumps.dims} - {"structure", "jump"}:
-        return draw_jumps_over(data, others.pop(), title)
+        return draw_jump_voltages_over(data, others.pop(), title)
     known = np.isfinite(data.voltage).any(["rate", "structure"])
     jumps = [str(jump) for jump in data.jump.values if known.sel(jump=jump)] or ["up"]
     figure, axes = make_panels(1, len(jumps), (6.0 * len(jumps), 4.5), title)
     for panel, jump in zip(axes, jumps, strict=True):
         part = data.sel(jump=jump)
         for structure in map(str, data.structure.values):
-            draw_jumps_over_rate(panel, part.sel(structure=structure), structure)
+            draw_jump_voltages_over_rate(panel, part.sel(structure=structure), structure)
         if known.sel(jump=jump):
             extrapolated = bool(np.isfinite(part.jumps).any())
             words = "at rate 0" if extrapolated else "too few rates for rate 0"
             panel.legend(loc="best", title=words)
         else:
             undecided = (part.decided == "undecided").any()
-            style.write_in_panel(panel, f"{'undecided' if undecided else 'no jump'} {jump}")
+            style.write_in_empty_panel(panel, f"{'undecided' if undecided else 'no jump'} {jump}")
             panel.set(xticks=[])
         panel.set(xlabel="rate$^{2/3}$ in (V/s)$^{2/3}$", ylabel="voltage in V")
         panel.set_title(f"jump {jump}")
     return figure
 
 
-def draw_jumps_over_rate(panel: Axes, data: xr.Dataset, structure: str) -> None:
+def draw_jump_voltages_over_rate(panel: Axes, data: xr.Dataset, structure: str) -> None:
     """Draw one structure's voltages of one jump and, where it is known, the line to rate 0."""
     lag, end = data.rate.values ** (2.0 / 3.0), float(data.jumps)
     colour, finite = STRUCTURES[structure], np.isfinite(data.voltage.values)

@@ -16,7 +16,7 @@ from ..model.ranges import OF_LENGTH, STRUCTURE
 from ..units import omega_of, unit_of_xi
 from .colours import BIFURCATION_MARKS, BLUE, RED
 from .kinds import kind_of
-from .scales import ETA, acceleration_scale, axis_values, frequency_scale, parameter_scale
+from .scales import ETA, acceleration_scale, axis_values, frequency_scale, parameter_scale_and_label
 from .style import draw_line
 
 SAME = 1e-9  # relative: numbers that are nearer than this are one
@@ -30,7 +30,7 @@ PAIR = (BLUE, RED)  # colours of stable and unstable orbits
 ALIKE = ({"eta", "frequency"}, {"level", "amplitude"})  # names of what is one axis
 
 
-def explain_mismatch(branch: xr.Dataset, over: str, parameters: Mapping[str, Any]) -> str:
+def explain_branch_mismatch(branch: xr.Dataset, over: str, parameters: Mapping[str, Any]) -> str:
     """Return a text on why a dataset is no branch of this structure and parameter; else ""."""
     question = kind_of(branch) or "nothing"
     if question != "branch":
@@ -40,7 +40,7 @@ def explain_mismatch(branch: xr.Dataset, over: str, parameters: Mapping[str, Any
         return f"a branch along {name}; expected one along {over}"
     if branch.attrs.get("box_acceleration", 0.0) or "box_acceleration" in branch.coords:
         return "a branch with a constant acceleration of the box; expected one without"
-    return explain_other_structure(branch, {name}, parameters)
+    return explain_structure_mismatch(branch, {name}, parameters)
 
 
 def explain_border_mismatch(
@@ -55,10 +55,10 @@ def explain_border_mismatch(
         return (
             f"a border over {' and '.join(names)}; expected {' and '.join(over)}, one a frequency"
         )
-    return explain_other_structure(curve, names, parameters)
+    return explain_structure_mismatch(curve, names, parameters)
 
 
-def explain_other_structure(
+def explain_structure_mismatch(
     branch: xr.Dataset, varied: set[str], parameters: Mapping[str, Any]
 ) -> str:
     """Return a text on how a result's structure differs in what does not vary; else ""."""
@@ -72,12 +72,12 @@ def explain_other_structure(
     return ""
 
 
-def explain_other_excitation(branch: xr.Dataset, data: xr.Dataset, over: str) -> str:
+def explain_excitation_mismatch(branch: xr.Dataset, data: xr.Dataset, over: str) -> str:
     """Return a text on why a branch has another excitation than the responses; else ""."""
     at = branch.frequency.values
     if over not in ALIKE[0]:
-        same = [differ(branch[key].values, data[key].values) for key in ("eta", "frequency")]
-        if all(same):
+        pairs = ((branch[key].values, data[key].values) for key in ("eta", "frequency"))
+        if not any(are_all_equal(*pair) for pair in pairs):
             eta = [float(each.eta.values[0]) for each in (branch, data)]
             return f"a branch at eta = {eta[0]:g}; expected eta = {eta[1]:g}"
     has_scale = any(branch.attrs.get(name) for name in OF_LENGTH)
@@ -91,9 +91,9 @@ def explain_other_excitation(branch: xr.Dataset, data: xr.Dataset, over: str) ->
     return ""
 
 
-def differ(some: np.ndarray, others: np.ndarray) -> bool:
-    """Return whether two arrays hold more than one number, apart from rounding."""
-    return not np.allclose(np.append(some, others), some[0], rtol=SAME, atol=0.0)
+def are_all_equal(some: np.ndarray, others: np.ndarray) -> bool:
+    """Return whether all elements of both arrays are one number, apart from rounding."""
+    return np.allclose(np.append(some, others), some[0], rtol=SAME, atol=0.0)
 
 
 def amplitude_at(data: xr.Dataset, frequency: np.ndarray) -> np.ndarray:
@@ -114,13 +114,13 @@ class Overlay:
         parameters = {key: data.attrs[key] for key in SI if key in data.attrs}
         if "structure" in data.dims:  # of both
             parameters.pop("bonded", None)
-        why = explain_mismatch(branch, parameter, parameters)
-        why = why or explain_other_excitation(branch, data, parameter)
+        why = explain_branch_mismatch(branch, parameter, parameters)
+        why = why or explain_excitation_mismatch(branch, data, parameter)
         if why:
             raise InputError(f"overlay: {why}")
         self.branch, self.data, self.parameter = branch, data, parameter
 
-    def x(self, values: xr.DataArray) -> np.ndarray:
+    def in_axis_units(self, values: xr.DataArray) -> np.ndarray:
         """Return values of the branch's parameter in the units of the responses' axis."""
         name, numbers = str(self.branch.attrs["over"]), values.values
         if name in ALIKE[0]:
@@ -131,40 +131,42 @@ class Overlay:
         if self.parameter == "level":
             accelerations = numbers * self.branch.frequency.values[0] ** 2
             return np.asarray(accelerations / acceleration_scale(self.data, "g")[0])
-        return np.asarray(numbers / parameter_scale(self.data, self.parameter)[0])
+        return np.asarray(numbers / parameter_scale_and_label(self.data, self.parameter)[0])
 
-    def scale(self, factor: float) -> np.ndarray:
-        """Return factors from lengths over a eta^2 to the axis' unit, one per branch point."""
+    def length_factors(self, unit: float) -> np.ndarray:
+        """Return factors from lengths over a eta^2 to the axis' unit, m, one per branch point."""
         own = self.parameter in ALIKE[1]
         amplitude = None if own else amplitude_at(self.data, self.branch.frequency.values)
-        return length_factors(self.branch, factor, amplitude)
+        return length_factors(self.branch, unit, amplitude)
 
-    def draw(self, plane: Axes, name: str, factor: float, colours: tuple[str, str] = PAIR) -> None:
-        """Draw a length of the orbits, such as ``xi_rel``, as lines; ``factor``: the axis' unit."""
-        x = self.x(self.branch[str(self.branch.attrs["over"])])
-        draw_orbits(plane, self.branch, x, name, self.scale(factor), colours)
+    def draw_orbits(
+        self, plane: Axes, name: str, unit: float, colours: tuple[str, str] = PAIR
+    ) -> None:
+        """Draw a length of the orbits, such as ``xi_rel``, as lines; ``unit``: the axis'."""
+        x = self.in_axis_units(self.branch[str(self.branch.attrs["over"])])
+        draw_orbits(plane, self.branch, x, name, self.length_factors(unit), colours)
 
-    def mark(self, plane: Axes, name: str, factor: float) -> None:
-        """Draw the branch's bifurcations at a length of the orbits; ``factor``: the axis' unit."""
+    def draw_bifurcations(self, plane: Axes, name: str, unit: float) -> None:
+        """Draw the branch's bifurcations at a length of the orbits; ``unit``: the axis'."""
         if self.branch.sizes.get("bifurcation"):
-            x = self.x(self.branch.bifurcation_value)
-            draw_bifurcations(plane, self.branch, x, name, self.scale(factor))
+            x = self.in_axis_units(self.branch.bifurcation_value)
+            draw_bifurcations(plane, self.branch, x, name, self.length_factors(unit))
 
-    def gaps(self, factor: float) -> np.ndarray:
-        """Return the branch's gaps at phase 0 in the unit of an axis."""
+    def gaps_at_phase_0(self, unit: float) -> np.ndarray:
+        """Return the branch's gaps at phase 0 in the unit of an axis; ratios for unit 0."""
         samples = self.branch.xi_rel.transpose("sample", "point").values
-        return np.asarray(samples * self.scale(factor))
+        return np.asarray(samples * self.length_factors(unit))
 
 
 def length_factors(
-    branch: xr.Dataset, factor: float, amplitude: np.ndarray | None = None
+    branch: xr.Dataset, unit: float, amplitude: np.ndarray | None = None
 ) -> np.ndarray:
-    """Return what lengths over a eta^2 are multiplied by at each point; 1 for an axis of ratios."""
-    if not factor:
+    """Return each point's factor from lengths over a eta^2 to a unit, m; 1 for unit 0: ratios."""
+    if not unit:
         return np.ones(branch.sizes["point"])
     if amplitude is None or not amplitude.any():
-        return np.broadcast_to(np.asarray(unit_of_xi(branch)), branch.sizes["point"]) / factor
-    return np.asarray(amplitude * branch.eta.values**2 / factor)
+        return np.broadcast_to(np.asarray(unit_of_xi(branch)), branch.sizes["point"]) / unit
+    return np.asarray(amplitude * branch.eta.values**2 / unit)
 
 
 def draw_orbits(

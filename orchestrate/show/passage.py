@@ -28,7 +28,9 @@ FLOOR = 1e-4  # of the largest line: the lower end of the colours
 
 
 @styled
-def draw_over_time(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> Figure:
+def draw_passage_histories(
+    runs: Mapping[str, xr.Dataset], resonance: float, title: str = ""
+) -> Figure:
     count, rows = len(runs), len(ROWS) + 1
     size = (6.5 * count, 2.6 * rows)
     figure, axes = make_panels(rows, count, size, title, sharex=True, sharey="row")
@@ -55,18 +57,18 @@ def draw_over_time(runs: Mapping[str, xr.Dataset], resonance: float, title: str 
 
 
 @styled
-def draw_passage(
+def draw_passage_with_spectra(
     runs: Mapping[str, xr.Dataset], spectra: Mapping[str, xr.Dataset], title: str = ""
 ) -> Figure:
     count = len(runs)
     size = (6.5 * count + 1.0, 14)
     figure, axes = make_panels(5, count, size, title, sharex="col", sharey="row")
-    felt, unit = acceleration_scale(next(iter(runs.values())))
-    top = max(float(spectrum.acceleration.max()) for spectrum in spectra.values()) / felt
+    factor, unit = acceleration_scale(next(iter(runs.values())))
+    top = max(float(spectrum.acceleration.max()) for spectrum in spectra.values()) / factor
     for column, (name, shown) in enumerate(runs.items()):
         data, panels = in_display_units(shown), axes[column::count]
-        begin, words = time_origin(data)
-        time = data.time.values - begin
+        origin, words = time_origin(data)
+        time = data.time.values - origin
         instant: Any = {"alpha": 0.6, "label": "at the instant"}
         panels[0].plot(time, np.abs(data.speed), color=BLUE, linewidth=0.4, **instant)
         mean_speed = (
@@ -75,13 +77,15 @@ def draw_passage(
         draw_line(panels[0], time, mean_speed, "-", BLACK, 1.2, "mean of a revolution")
         draw_line(panels[1], time, data.voltage, "-", BLACK, 1.0)
         draw_line(panels[2], time, data.x1, "-", STRUCTURES.get(name, BLUE), 0.3)
-        totals = {account: data[account].values for account in ACCOUNTS}
-        means = {of: mean_rate(data, total, POWER_REVOLUTIONS, 2) for of, total in totals.items()}
+        means = {
+            account: mean_rate(data, data[account].values, POWER_REVOLUTIONS, repeats=2)
+            for account in ACCOUNTS
+        }
         draw_powers(panels[3], time, means)
-        mesh = draw_waterfall(panels[4], spectra[name], begin, felt, top)
+        mesh = draw_waterfall(panels[4], spectra[name], origin, factor, top)
         for panel in panels[:4]:
             panel.axvline(0.0, color=GREY, linewidth=0.8, zorder=0)
-        panels[0].set_title(f"{name}: {format_jumps(data)}")
+        panels[0].set_title(f"{name}: {format_jumps_or_passage(data)}")
         panels[3].set_title(f"means of {POWER_REVOLUTIONS} revolutions, taken twice")
         panels[4].set(xlabel=f"time {words} in s", xlim=(time[0], time[-1]))
     speed, displacement = label_with_unit("speed", data.speed), label_with_unit("$x_1$", data.x1)
@@ -95,12 +99,14 @@ def draw_passage(
     return figure
 
 
-def draw_waterfall(axes: Axes, spectra: xr.Dataset, begin: float, felt: float, top: float) -> Any:
+def draw_waterfall(
+    axes: Axes, spectra: xr.Dataset, origin: float, unit: float, largest: float
+) -> Any:
     """Draw spectra over time as colours, without the slow motion below half the speed."""
     shown = spectra.sel(order=slice(0.25, None))
-    values = (shown.acceleration.values.T / felt).clip(FLOOR * top)
-    colours: Any = {"norm": LogNorm(FLOOR * top, top), "shading": "nearest"}
-    return axes.pcolormesh(shown.time.values - begin, shown.order.values, values, **colours)
+    values = (shown.acceleration.values.T / unit).clip(FLOOR * largest)
+    colours: Any = {"norm": LogNorm(FLOOR * largest, largest), "shading": "nearest"}
+    return axes.pcolormesh(shown.time.values - origin, shown.order.values, values, **colours)
 
 
 # -- jumps in words -------------------------------------------------------------------------------
@@ -121,7 +127,7 @@ def jump_texts(data: xr.Dataset) -> list[str]:
     return jumps + [f"{way} undecided" for way in undecided_directions(data)]
 
 
-def format_jumps(data: xr.Dataset) -> str:
+def format_jumps_or_passage(data: xr.Dataset) -> str:
     return ", ".join(f"jump {text}" for text in jump_texts(data)) or format_passage(data)
 
 
@@ -161,14 +167,16 @@ def mean_powers(revolutions: xr.Dataset) -> dict[str, np.ndarray]:
     return {account: (total[lag:] - total[:-lag]) / span for account, total in energies.items()}
 
 
-def mean_rate(data: xr.Dataset, total: np.ndarray, count: int, times: int = 1) -> np.ndarray:
-    """Return the rate of a total, averaged over ``count`` revolutions; NaN at the ends."""
+def mean_rate(
+    data: xr.Dataset, total: np.ndarray, revolutions: int, repeats: int = 1
+) -> np.ndarray:
+    """Return the rate of a total, averaged over revolutions, repeatedly; NaN at the ends."""
     from scipy.integrate import cumulative_trapezoid
 
-    angle, time, half = np.abs(data.angle.values), data.time.values, 0.5 * count * TURN
+    angle, time, half = np.abs(data.angle.values), data.time.values, 0.5 * revolutions * TURN
     distance = np.maximum.accumulate(angle)
     before, after = (np.interp(angle + side, distance, time) for side in (-half, half))
-    for done in range(1, times + 1):
+    for done in range(1, repeats + 1):
         known = (angle - done * half > distance[0]) & (angle + done * half < distance[-1])
         gained = np.interp(after, time, total) - np.interp(before, time, total)
         rate = np.where(known, gained / (after - before), np.nan)

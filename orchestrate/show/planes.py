@@ -26,8 +26,14 @@ from . import labels
 from .colours import BESIDES_RED, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW
 from .kinds import MORE, draws
 from .labels import branch_title, has_frequency_unit, title_from_attributes
-from .scales import axis_values, in_unit, lengths, parameter_scale, varied_dimensions
-from .style import XI_REL, XI_REL_RATE, draw_line, legend_below, make_panels, styled
+from .scales import (
+    append_unit,
+    axis_values,
+    displayed_lengths,
+    parameter_scale_and_label,
+    varied_dimensions,
+)
+from .style import XI_REL, XI_REL_RATE, add_figure_legend, draw_line, make_panels, styled
 
 COLUMNS = {  # of a map: the quantities that have a panel
     "impacts_per_period": "impacts per $T$",
@@ -53,7 +59,7 @@ SHARES = {0.0: "0", 0.25: "π/2", 0.5: "π", 0.75: "3π/2", 1.0: "2π"}  # of a 
 STATES = (BLUE, RED, GREY)  # separate motion, sequence of impacts, permanent contact
 
 
-@draws("map", beside=MORE)
+@draws("map", partner=MORE)
 @styled
 def draw_map(*maps: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
     columns = [name for name in COLUMNS if all(name in data for data in maps)]
@@ -70,26 +76,26 @@ def draw_map(*maps: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] =
         x, y = axis_values(data, right), axis_values(data, up)
         for column, name in enumerate(columns):
             plane = axes[row * len(columns) + column]
-            values, label = shown_values(data, name)
-            draw_values(plane, values.transpose(up, right), x.values, y.values)
+            values, label = displayed_values(data, name)
+            draw_map_panel(plane, values.transpose(up, right), x.values, y.values)
             words = "" if column or title or len(maps) == 1 else title_from_attributes(data)
             plane.set_title("\n".join(filter(None, [words, label])))
             plane.set(ylabel="" if column % across else y.label, xlabel=x.label)
             limits = plane.axis()
             for curve in overlay:
-                scales = [parameter_scale(data, name)[0] for name in (right, up)]
+                scales = [parameter_scale_and_label(data, name)[0] for name in (right, up)]
                 across_line, along = curve[right] / scales[0], curve[up] / scales[1]
                 kind = str(curve.attrs["kind"])
                 draw_line(plane, across_line, along, "-", "white", 2.6)
                 draw_line(plane, across_line, along, "-", BORDERS[kind], 1.3, kind)
-                mark_codimension_two(plane, curve, (right, up), scales)
+                mark_codimension_two_points(plane, curve, (right, up), scales)
             plane.axis(limits)
     if overlay:
-        legend_below(figure, axes)
+        add_figure_legend(figure, axes)
     return figure
 
 
-def shown_values(data: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
+def displayed_values(data: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
     """Return a quantity and its label; gaps and impulses in SI, or in the unit asked for."""
     in_si = has_frequency_unit(data) or display_units_of(data).length
     unit = unit_of_xi(data) if name in ("xi_rel_max", "impulse_max") and in_si else None
@@ -100,10 +106,10 @@ def shown_values(data: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
         factor, letter = labels.si_prefix(float(impulses.max()))
         return impulses / factor, f"largest impulse in {letter}N s"
     gaps = (data[name] * unit).rename(name)
-    return lengths(data, gaps, f"largest {labels.gap_name(data)}")
+    return displayed_lengths(data, gaps, f"largest {labels.gap_name(data)}")
 
 
-def draw_values(plane: Axes, data: xr.DataArray, x: np.ndarray, y: np.ndarray) -> None:
+def draw_map_panel(plane: Axes, data: xr.DataArray, x: np.ndarray, y: np.ndarray) -> None:
     """Draw one map with its colour bar; a y axis in equal ratios becomes logarithmic."""
     values, shades = colour_scale(str(data.name), data.values)
     picture = plane.pcolormesh(x, y, values, rasterized=True, **shades)
@@ -118,7 +124,7 @@ def draw_values(plane: Axes, data: xr.DataArray, x: np.ndarray, y: np.ndarray) -
     if np.ma.is_masked(values):
         plane.set_facecolor(NOTHING)
         bar.ax.set_xlabel("grey: none", fontsize=7)
-    plane.set_yscale("log" if is_geometric(y) else "linear")
+    plane.set_yscale("log" if is_geometric_sequence(y) else "linear")
     plane.grid(False)
 
 
@@ -135,7 +141,7 @@ def colour_scale(name: str, values: np.ndarray) -> tuple[np.ndarray, dict[str, A
     return shown, {"norm": LogNorm(above_zero.min(), above_zero.max()) if above_zero.size else None}
 
 
-def is_geometric(values: np.ndarray) -> bool:
+def is_geometric_sequence(values: np.ndarray) -> bool:
     if len(values) < 3 or values[0] <= 0.0 or values[-1] <= values[0]:
         return False
     return bool(np.allclose(values, np.geomspace(values[0], values[-1], len(values))))
@@ -149,14 +155,14 @@ def draw_basin(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", 
         "eta" in data.coords and not display_units_of(data).frequency
     )  # else the title has it
     eta = rf"$\eta$ = {float(data.eta):.4g}" if by_ratio else ""
-    words = title or labels.join([title_from_attributes(data, ("eta", x, y)), eta])
+    words = title or labels.join_by_commas([title_from_attributes(data, ("eta", x, y)), eta])
     figure, (plane,) = make_panels(1, 1, (6.4, 5.6), words)
     kinds = data.attractor_of.where(data.attractor_of >= 0).values.clip(max=len(BASINS))
     limits: Any = {"vmin": -0.5, "vmax": len(BASINS) + 0.5, "rasterized": True}
-    (right, x_label), (up, y_label) = (coordinate_scale(data, name) for name in (x, y))
+    (right, x_label), (up, y_label) = (coordinate_scale_and_label(data, name) for name in (x, y))
     shades = ListedColormap([*BASINS, OTHER])
     plane.pcolormesh(data[x] / right, data[y] / up, kinds, cmap=shades, **limits)
-    label_attractors(plane, data)
+    add_attractors_to_legend(plane, data)
     if "state" in data and "phase" not in (x, y):
         mark_attractors(plane, data, (x, right), (y, up))
     plane.set(xlabel=names[0] or x_label, ylabel=names[1] or y_label)
@@ -166,10 +172,14 @@ def draw_basin(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", 
 
 
 @styled
-def draw_motions(data: xr.Dataset, motions: Sequence[xr.Dataset], title: str = "") -> Figure:
+def draw_phase_curves(
+    attractors: xr.Dataset, motions: Sequence[xr.Dataset], title: str = ""
+) -> Figure:
     figure, (plane,) = make_panels(1, 1, (6.4, 5.6), title or title_from_attributes(motions[0]))
-    (right, x_label), (up, y_label) = (coordinate_scale(motions[0], n) for n in ("x_rel", "v_rel"))
-    label_attractors(plane, data)
+    (right, x_label), (up, y_label) = (
+        coordinate_scale_and_label(motions[0], n) for n in ("x_rel", "v_rel")
+    )
+    add_attractors_to_legend(plane, attractors)
     for motion, colour in zip(motions, (*BASINS, *[OTHER] * len(motions)), strict=False):
         _, gap, rate = gap_through_impacts(motion)
         plane.plot(gap / right, rate / up, color=colour, linewidth=1.2)
@@ -190,14 +200,18 @@ def gap_through_impacts(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.nd
     return time[order], gap[order], rate[order]
 
 
-def coordinate_scale(data: xr.Dataset, name: str) -> tuple[float, str]:
+def coordinate_scale_and_label(data: xr.Dataset, name: str) -> tuple[float, str]:
     """Return the divisor to display units and the axis label of a coordinate of the plane."""
     if name == "phase":
-        return 1.0, labels.symbol(name)
+        return 1.0, labels.symbol_with_unit(name)
     factor, word = display_scale_of(data, "m/s" if name.startswith("v") else "m")
     unit = "" if shows_lengths_as_ratios(data) else labels.typeset_unit(word)
-    words = labels.gap_name(data) if name == "x_rel" else labels.symbol(name).rpartition(" in ")[0]
-    return factor, in_unit(words, unit)
+    words = (
+        labels.gap_name(data)
+        if name == "x_rel"
+        else labels.symbol_with_unit(name).rpartition(" in ")[0]
+    )
+    return factor, append_unit(words, unit)
 
 
 def mark_attractors(
@@ -217,12 +231,12 @@ def mark_attractors(
     plane.plot([], [], markerfacecolor="white", label="states on them", **cross)
 
 
-def label_attractors(plane: Axes, data: xr.Dataset) -> None:
+def add_attractors_to_legend(plane: Axes, data: xr.Dataset) -> None:
     for index, colour in zip(range(data.sizes["attractor"]), BASINS, strict=False):
         part = data.isel(attractor=index)
         n, impacts = float(part.multiplicity), float(part.impacts_per_period)
         kind = labels.orbit_label(n, impacts) or f"not periodic, {impacts:.2f} impacts per T"
-        gap = gap_text(data, float(part.xi_rel_max))
+        gap = format_gap(data, float(part.xi_rel_max))
         text = f"{index}, {float(part.share):.1%}: {kind}, largest {gap}"
         plane.plot([], [], "s", color=colour, label=text)
     rest = data.share.values[len(BASINS) :].sum()
@@ -234,7 +248,7 @@ def label_attractors(plane: Axes, data: xr.Dataset) -> None:
         plane.plot([], [], "s", color="white", markeredgecolor=OTHER, label=words)
 
 
-def gap_text(data: xr.Dataset, gap: float) -> str:
+def format_gap(data: xr.Dataset, gap: float) -> str:
     """Format a gap over a eta^2, as a length where a unit of length is asked for."""
     length = unit_of_xi(data) if display_units_of(data).length else None
     if length is None:
@@ -242,23 +256,25 @@ def gap_text(data: xr.Dataset, gap: float) -> str:
     return f"gap = {labels.format_length(data, gap * float(length))}"
 
 
-@draws("border", beside=MORE)
+@draws("border", partner=MORE)
 @styled
 def draw_border(*curves: xr.Dataset, title: str = "") -> Figure:
     over = [str(name) for name in curves[0].attrs["over"]]
     figure, (plane,) = make_panels(1, 1, (9.6, 4.4), title or branch_title(curves[0], over))
-    (x_unit, x_label), (y_unit, y_label) = (parameter_scale(curves[0], name) for name in over)
+    (x_unit, x_label), (y_unit, y_label) = (
+        parameter_scale_and_label(curves[0], name) for name in over
+    )
     for curve in curves:
         x, y, kind = curve[over[0]] / x_unit, curve[over[1]] / y_unit, str(curve.attrs["kind"])
         draw_line(plane, x, y, "-", BORDERS[kind], 1.2, kind)
     for curve in curves:
-        mark_codimension_two(plane, curve, over, (x_unit, y_unit))
+        mark_codimension_two_points(plane, curve, over, (x_unit, y_unit))
     plane.set(xlabel=x_label, ylabel=y_label)
-    legend_below(figure, [plane])
+    add_figure_legend(figure, [plane])
     return figure
 
 
-def mark_codimension_two(
+def mark_codimension_two_points(
     plane: Axes, curve: xr.Dataset, over: Sequence[str], units: Sequence[float]
 ) -> None:
     if not curve.sizes.get("codimension_two"):
@@ -278,16 +294,16 @@ def draw_poincare(data: xr.Dataset, title: str = "") -> Figure:
     size = 2.0 if count > 2000 else 4.0 if count > 200 else 7.0
     sticks = np.full(count, False)
     if at == "phase":
-        (x, x_label), (y, y_label) = gap_and_rate(data)
+        (x, x_label), (y, y_label) = displayed_gap_and_velocity(data)
     else:
         x, x_label = data.phase / TURN, "phase of the box in rad"
         plane.set_xlim(0.0, 1.0)
         plane.xaxis.set_major_locator(MultipleLocator(0.25))
         plane.xaxis.set_major_formatter(FuncFormatter(lambda turn, _: SHARES.get(turn, "")))
     if at == "releases":
-        y, y_label = lengths(data, data.v1, "velocity of both masses", "m/s")
+        y, y_label = displayed_lengths(data, data.v1, "velocity of both masses", "m/s")
     if at == "impacts":
-        y, y_label = lengths(data, data.impact_velocity, "closing speed", "m/s")
+        y, y_label = displayed_lengths(data, data.impact_velocity, "closing speed", "m/s")
         sticks = data.sticks.values.astype(bool)
     points: Any = {"linestyle": "none", "marker": ".", "markersize": size, "markeredgewidth": 0.0}
     kinds = (("impacts", ~sticks, BLACK), ("permanent contact follows", sticks, RED))
@@ -301,27 +317,30 @@ def draw_poincare(data: xr.Dataset, title: str = "") -> Figure:
     return figure
 
 
-def gap_and_rate(data: xr.Dataset) -> tuple[tuple[xr.DataArray, str], tuple[xr.DataArray, str]]:
+def displayed_gap_and_velocity(
+    data: xr.Dataset,
+) -> tuple[tuple[xr.DataArray, str], tuple[xr.DataArray, str]]:
     """Return gap and gap velocity in display units, each with its axis label."""
-    return lengths(data, data.x_rel, "gap"), lengths(data, data.v_rel, "gap velocity", "m/s")
+    gap = displayed_lengths(data, data.x_rel, "gap")
+    return gap, displayed_lengths(data, data.v_rel, "gap velocity", "m/s")
 
 
 def widen_narrow_limits(plane: Axes) -> None:
     """Widen axes with nearly constant values, so that a periodic motion shows as a point."""
-    for low, high, put in (
+    for low, high, set_limits in (
         (*plane.get_xlim(), plane.set_xlim),
         (*plane.get_ylim(), plane.set_ylim),
     ):
         middle = 0.5 * (low + high)
         half = max(0.5 * (high - low), 0.05 * abs(middle))
-        put(middle - half, middle + half)
+        set_limits(middle - half, middle + half)
 
 
 @draws("manifold")
 @styled
 def draw_manifold(data: xr.Dataset, title: str = "") -> Figure:
     figure, (plane,) = make_panels(1, 1, (7.4, 5.6), title or title_from_attributes(data))
-    (gap, x_label), (rate, y_label) = gap_and_rate(data)
+    (gap, x_label), (rate, y_label) = displayed_gap_and_velocity(data)
     sides = {"+": (BLUE, "where the gap grows from the saddle on"), "-": (RED, "where it falls")}
     for side in map(str, data.side.values):
         colour, words = sides[side]
@@ -329,7 +348,7 @@ def draw_manifold(data: xr.Dataset, title: str = "") -> Figure:
     saddle: Any = {"color": BLACK, "markersize": 9, "linestyle": "none", "label": "saddle"}
     plane.plot(gap[0, 0], rate[0, 0], "+", **saddle)
     plane.set(xlabel=x_label, ylabel=y_label)
-    legend_below(figure, [plane])
+    add_figure_legend(figure, [plane])
     return figure
 
 
@@ -345,21 +364,21 @@ def relative_motion(data: xr.Dataset, panel: int) -> tuple[np.ndarray, np.ndarra
 
 
 @styled
-def draw_states(data: xr.Dataset) -> Figure:
+def draw_phase_curves_by_state(data: xr.Dataset) -> Figure:
     figure, (left, right) = make_panels(1, 2, (8.5, 4.2))
     state = data.state.values
     _, gap, rate = relative_motion(data, 0)
-    draw_by_state(left, data, (state[:, 0], state[:, 2]), "-")
-    draw_by_state(left, data, (state[:, 1], state[:, 3]), "--")
-    draw_by_state(right, data, (gap, rate), "-", dotted=True)
+    draw_curve_by_state(left, data, (state[:, 0], state[:, 2]), "-")
+    draw_curve_by_state(left, data, (state[:, 1], state[:, 3]), "--")
+    draw_curve_by_state(right, data, (gap, rate), "-", dotted=True)
     title = r"(a) both masses: solid $\xi_1$, dashed $\xi_2$"
     left.set(title=title, xlabel=r"$\xi_i$", ylabel=r"$\xi'_i$")
     right.set(title="(b) relative motion", xlabel=XI_REL, ylabel=XI_REL_RATE)
-    legend_below(figure, [right])
+    add_figure_legend(figure, [right])
     return figure
 
 
-def draw_by_state(
+def draw_curve_by_state(
     axes: Axes,
     data: xr.Dataset,
     curve: tuple[np.ndarray, np.ndarray],
@@ -377,7 +396,7 @@ def draw_by_state(
 
 
 @styled
-def draw_masses(data: xr.Dataset) -> Figure:
+def draw_phase_curves_of_masses(data: xr.Dataset) -> Figure:
     count = data.sizes["panel"]
     figure, axes = make_panels(1, count, (3.3 * count, 3.7))
     reach = 1.08 * float(np.abs(data.state).max())
@@ -390,12 +409,12 @@ def draw_masses(data: xr.Dataset) -> Figure:
         plane.set_xlabel(r"$\xi_i$")
         plane.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
     axes[0].set_ylabel(r"$\xi'_i$")
-    legend_below(figure, axes[:1])
+    add_figure_legend(figure, axes[:1])
     return figure
 
 
 @styled
-def draw_phase_grid(data: xr.Dataset, columns: int = 4) -> Figure:
+def draw_relative_phase_curves(data: xr.Dataset, columns: int = 4) -> Figure:
     count = data.sizes["panel"]
     rows = -(-count // columns)
     figure, axes = make_panels(rows, columns, (2.7 * columns, 2.6 * rows))

@@ -20,8 +20,8 @@ from . import (  # noqa: F401 -- what draws registers itself
     spectra,
     weak_drive,
 )
-from .figure_files import for_slides, slide_shape
-from .kinds import BONDED, BRANCHES, DRAW, MORE, OTHER, TOGETHER, required_kind
+from .figure_files import parse_slide_shape, resize_for_slide
+from .kinds import BONDED, BRANCHES, DRAW, MORE, OTHER, PARTNERS, require_kind
 
 OVER_OTHERS = ("border", "branch", "drive_branch")
 EXPECTED = (
@@ -80,41 +80,41 @@ def plot(
     ``orchestrate.show.style.STYLE``, as settings of Matplotlib: what is changed there holds for
     every picture from then on.
     """
-    kinds = [required_kind(answer) for answer in answers]
+    kinds = [require_kind(answer) for answer in answers]
     shown: dict[str, list[xr.Dataset]] = {kind: [] for kind in kinds}
     for kind, answer in zip(kinds, answers, strict=True):
         shown[kind].append(with_units(answer, units))
     if part and (part != "jumps" or set(shown) != {"couple"}):
         asked = f"part={part!r} of {' and '.join(sorted(shown))}"
         raise InputError(f"plot: {asked}; expected 'jumps' of couple")
-    jumps = partial(weak_drive.draw_jumps, by_structure(shown.get("couple", [])))
-    draw = jumps if part else choose_picture(shown)
+    jumps = partial(weak_drive.draw_jump_histories, by_structure(shown.get("couple", [])))
+    draw = jumps if part else choose_drawing(shown)
     if draw is None:
         raise InputError(f"plot: no picture of {' and '.join(kinds) or 'nothing'}; {EXPECTED}")
-    shape = slide_shape(size)
-    return for_slides(draw(title=title) if title else draw(), shape)
+    shape = parse_slide_shape(size)
+    return resize_for_slide(draw(title=title) if title else draw(), shape)
 
 
-def choose_picture(shown: dict[str, list[xr.Dataset]]) -> Callable[..., Figure] | None:
+def choose_drawing(shown: dict[str, list[xr.Dataset]]) -> Callable[..., Figure] | None:
     kind, *more = sorted(shown, key=lambda kind: kind in OVER_OTHERS) or [""]
     if kind not in DRAW:
         return None
-    (first, *others), beside = shown[kind], TOGETHER.get(kind)
+    (first, *others), partner = shown[kind], PARTNERS.get(kind)
     runs = by_structure(shown[kind])
-    if beside == OTHER:
+    if partner == OTHER:
         branches = shown.get("drive_branch", [])
         if len(runs) <= len(others) or more not in ([], ["drive_branch"]) or len(branches) > 1:
             return None
         if branches and kind != "couple":
             return None
         return partial(DRAW[kind], runs, **{"branches": branches[0]} if branches else {})
-    if not more and (not others or beside == MORE):
+    if not more and (not others or partner == MORE):
         return partial(DRAW[kind], first, *others)
     if more == ["border"] and not others and kind == "map":
         return partial(DRAW[kind], first, overlay=shown["border"])
-    if more == ["branch"] and not others and beside == BRANCHES:
+    if more == ["branch"] and not others and partner == BRANCHES:
         return partial(DRAW[kind], first, overlay=shown["branch"])
-    if not more and len(others) == 1 and len(runs) == 2 and beside == BONDED:
+    if not more and len(others) == 1 and len(runs) == 2 and partner == BONDED:
         return partial(DRAW[kind], runs["delaminated"], bonded=runs["bonded"])
     return None
 

@@ -10,7 +10,7 @@ from ..files import write_atomically
 from ..lazy import xr
 from ..units import Units, with_units
 from .answers import answer_section, origin_section, signs_section, title_of
-from .kinds import required_kind
+from .kinds import require_kind
 from .page import Page, Section
 from .verdict import make_verdict, verdict_sections
 
@@ -66,8 +66,8 @@ def report(
     if not answers:
         raise InputError("report: no answer given; expected one at least")
     shown = [with_units(answer, units) for answer in answers]
-    first, *others = sorted(shown, key=lambda answer: required_kind(answer) != "detect")
-    verdict = make_verdict(first) if required_kind(first) == "detect" else None
+    first, *others = sorted(shown, key=lambda answer: require_kind(answer) != "detect")
+    verdict = make_verdict(first) if require_kind(first) == "detect" else None
     sections = [section for answer in (first, *others) for section in sections_of(answer)]
     heading, record = title or title_of(first), str(first.attrs.get("record_file", ""))
     about = notes or (record if record not in heading else "")
@@ -77,7 +77,7 @@ def report(
 
 
 def sections_of(answer: xr.Dataset) -> list[Section]:
-    kind = required_kind(answer)
+    kind = require_kind(answer)
     if kind == "detect":
         return verdict_sections(answer)
     return [signs_section(answer) if kind == "signs" else answer_section(answer)]

@@ -20,13 +20,13 @@ from .overlay import Overlay
 from .scales import (
     AxisValues,
     acceleration_scale,
+    append_unit,
     axis_values,
     frequency_scale,
-    in_unit,
     length_scale,
     varied_dimension,
 )
-from .style import draw_line, legend_below, make_panels, set_title, styled, use_plain_log
+from .style import add_figure_legend, draw_line, make_panels, set_plain_log_scale, set_title, styled
 
 DIRECTION_LINES: dict[str, Any] = {  # down lies on up
     "up": {"linestyle": DIRECTION_STYLES["up"], "linewidth": 1.8, "alpha": 0.75},
@@ -44,7 +44,7 @@ NAMES = {
 LENGTHS = {"x1_max": "xi1_max", "x2_max": "xi2_max", "x_rel_max": "xi_rel_max"}  # of an orbit
 
 
-@draws("resonance", beside=BRANCHES)
+@draws("resonance", partner=BRANCHES)
 @styled
 def draw_resonance(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
     figure = Figure(figsize=(9.6, 9.4 if THRESHOLD in data else 7.6), layout="constrained")
@@ -58,27 +58,29 @@ def draw_resonance(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Datas
         if name == THRESHOLD:
             draw_level_of_box(plane, data, x)
             continue
-        draw_quantity(plane, data, data[name], x)
+        draw_curves_of_quantity(plane, data, data[name], x)
         draw_peaks(plane, data, name, parameter, x)
         span = plane.get_xlim()
         for branch in branches if name in LENGTHS else ():
-            factor = display_unit(data, data[name])[0]
-            branch.draw(plane, LENGTHS[name], factor, (BLACK, BLACK))
+            factor = quantity_scale(data, data[name])[0]
+            branch.draw_orbits(plane, LENGTHS[name], factor, (BLACK, BLACK))
             if name == "x_rel_max":
-                branch.mark(plane, LENGTHS[name], factor)
+                branch.draw_bifurcations(plane, LENGTHS[name], factor)
             plane.set_xlim(span)
     if "x_rel_max" in axes and data.sizes.get("jump"):
         draw_jumps(axes["x_rel_max"], data, parameter, x)
     for plane in axes.values():  # panels of two widths
         plane.tick_params(labelbottom=True)
         plane.set_xlabel(x.label)
-    legend_below(figure, reversed(list(axes.values())), columns=6)
+    add_figure_legend(figure, reversed(list(axes.values())), columns=6)
     return figure
 
 
-def draw_quantity(axes: Axes, data: xr.Dataset, values: xr.DataArray, x: AxisValues) -> None:
+def draw_curves_of_quantity(
+    axes: Axes, data: xr.Dataset, values: xr.DataArray, x: AxisValues
+) -> None:
     """Draw one quantity's curves and list each structure's maximum; no gap if bonded."""
-    factor, unit = display_unit(data, values)
+    factor, unit = quantity_scale(data, values)
     largest: dict[str, tuple[float, float]] = {}
     for structure, direction, part in iterate_curves(values):
         curve = part.values / factor
@@ -92,9 +94,9 @@ def draw_quantity(axes: Axes, data: xr.Dataset, values: xr.DataArray, x: AxisVal
         at = int(np.nanargmax(curve))
         largest[structure] = max(largest.get(structure, (0.0, 0.0)), (curve[at], x.values[at]))
     axes.margins(x=0.0, y=0.12)
-    use_plain_log(axes)
-    axes.set_ylabel(in_unit(NAMES[str(values.name)], unit))
-    list_largest(axes, largest, unit, x)
+    set_plain_log_scale(axes)
+    axes.set_ylabel(append_unit(NAMES[str(values.name)], unit))
+    write_largest_values(axes, largest, unit, x)
 
 
 def iterate_curves(values: xr.DataArray) -> Iterator[tuple[str, str, xr.DataArray]]:
@@ -114,8 +116,8 @@ def draw_level_of_box(axes: Axes, data: xr.Dataset, x: AxisValues) -> None:
     above: Any = {"where": level >= threshold, "color": GREY, "alpha": 0.25, "linewidth": 0.0}
     axes.fill_between(x.values, threshold, level, **above)
     axes.margins(x=0.0, y=0.12)
-    use_plain_log(axes)
-    axes.set_ylabel(in_unit(r"peak $|\ddot{y}|$", unit))
+    set_plain_log_scale(axes)
+    axes.set_ylabel(append_unit(r"peak $|\ddot{y}|$", unit))
 
 
 def draw_threshold(
@@ -131,14 +133,14 @@ def draw_threshold(
     return shown
 
 
-def display_unit(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
+def quantity_scale(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
     if str(values.name).startswith("a"):
         return acceleration_scale(data)
     return length_scale(data, float(values.max()))
 
 
 def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: AxisValues) -> None:
-    factor, _ = display_unit(data, data[name])
+    factor, _ = quantity_scale(data, data[name])
     for i in range(data.sizes.get("peak", 0)):
         peak = data.isel(peak=i)
         if "peak_irregular" in data and bool(peak.peak_irregular):
@@ -158,7 +160,7 @@ def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: AxisValues) -> N
         for at in positions:
             axes.axvline(at, color=BLACK, linewidth=0.8, linestyle=style, label=f"jump {direction}")
         if positions:
-            texts.append(f"jump{'s' * (len(positions) > 1)} {direction} at {x.text(*positions)}")
+            texts.append(f"jump{'s' * (len(positions) > 1)} {direction} at {x.format(*positions)}")
     if texts:
         axes.set_title("; ".join(texts), fontsize=8)
 
@@ -168,7 +170,7 @@ def axis_position(value: float, parameter: xr.DataArray, x: AxisValues) -> float
     return float(np.interp(value, parameter.values[order], x.values[order]))
 
 
-def list_largest(
+def write_largest_values(
     axes: Axes, largest: Mapping[str, tuple[float, float]], unit: str, x: AxisValues
 ) -> None:
     middle = float(np.mean(axes.get_xlim()))
@@ -177,14 +179,14 @@ def list_largest(
     for row, (structure, (value, at)) in enumerate(largest.items()):
         corner = (0.99 if right else 0.01, 0.97 - 0.075 * row)
         number = f"{value:.4g} {unit}".rstrip()
-        text = f"{structure}: {number} at {x.text(at)}".lstrip(": ")
+        text = f"{structure}: {number} at {x.format(at)}".lstrip(": ")
         colour = STRUCTURES.get(structure, BLACK)
         axes.text(*corner, text, color=colour, transform=axes.transAxes, **style)
 
 
 @draws("resonance_levels")
 @styled
-def draw_levels(data: xr.Dataset, title: str = "") -> Figure:
+def draw_resonance_levels(data: xr.Dataset, title: str = "") -> Figure:
     count = 3 if THRESHOLD in data else 2
     words = title or title_from_attributes(data, ("amplitude", "frequency"))
     figure, axes = make_panels(count, 1, (8.4, 1.2 + 2.5 * count), words, sharex=True)
@@ -203,20 +205,20 @@ def draw_levels(data: xr.Dataset, title: str = "") -> Figure:
         draw_line(axes[1], x.values, gaps.isel(level=number) / length, "-", colour, 1.4)
     glued = size.isel(level=0).sel(structure="bonded")
     draw_line(axes[0], x.values, glued, "--", GREY, 1.0, "bonded, at each level")
-    use_plain_log(axes[0])
+    set_plain_log_scale(axes[0])
     axes[0].set_ylabel("largest acceleration\nbetween impacts\nover level")
-    axes[1].set_ylabel(in_unit("largest gap", length_unit))
+    axes[1].set_ylabel(append_unit("largest gap", length_unit))
     axes[1].set_ylim(bottom=0.0)
     if THRESHOLD in data:
         draw_threshold(axes[2], data, factor, "level at which it first {}")
-        mark_lowest(axes[2], data)
+        mark_lowest_threshold(axes[2], data)
         for number, colour in enumerate(colours):
             axes[2].axhline(level[number] / factor, color=colour, linewidth=1.0)
-        use_plain_log(axes[2])
-        axes[2].set_ylabel(in_unit("level of the box", unit))
+        set_plain_log_scale(axes[2])
+        axes[2].set_ylabel(append_unit("level of the box", unit))
     axes[-1].set_xlabel(x.label)
     axes[0].margins(x=0.0)
-    legend_below(figure, axes)
+    add_figure_legend(figure, axes)
     return figure
 
 
@@ -228,16 +230,16 @@ def draw_contact_threshold(data: xr.Dataset, title: str = "") -> Figure:
     figure, (plane,) = make_panels(1, 1, (6.4, 4.2), words)
     factor, unit = acceleration_scale(data, "g")
     level = draw_threshold(plane, data, factor, "it first {}")
-    mark_lowest(plane, data)
+    mark_lowest_threshold(plane, data)
     if np.nanmax(level, initial=0.0) > 0.0:
-        use_plain_log(plane)
+        set_plain_log_scale(plane)
     along = axis_values(data, str(data[THRESHOLD].dims[0])).label
-    plane.set(xlabel=along, ylabel=in_unit("peak acceleration of the box", unit))
+    plane.set(xlabel=along, ylabel=append_unit("peak acceleration of the box", unit))
     plane.legend()
     return figure
 
 
-def mark_lowest(axes: Axes, data: xr.Dataset) -> None:
+def mark_lowest_threshold(axes: Axes, data: xr.Dataset) -> None:
     """Mark the lowest threshold of the range, which may lie between two frequencies."""
     if LOWEST not in data:
         return

@@ -17,10 +17,10 @@ from ..units import (
     shows_lengths_as_ratios,
     unit_of_xi,
 )
-from .labels import gap_name, has_frequency_unit, si_prefix, symbol, typeset_unit
+from .labels import gap_name, has_frequency_unit, si_prefix, symbol_with_unit, typeset_unit
 from .style import XI_REL
 
-ETA = symbol("eta")
+ETA = symbol_with_unit("eta")
 FREQUENCIES = {"Hz": r"frequency $\Omega/2\pi$ in Hz", "rpm": "frequency of the box in rpm"}
 FREQUENCIES |= {"rad/s": r"$\Omega$ in rad/s", "eta": ETA}
 MAX_LISTED = 6  # numbers that a list of values has before it says how many more there are
@@ -32,7 +32,7 @@ class AxisValues(NamedTuple):
     values: np.ndarray
     label: str
 
-    def text(self, *values: float) -> str:
+    def format(self, *values: float) -> str:
         words, _, unit = self.label.rpartition(" in ")
         letter = f"{unit} = " if not words and unit.startswith("$") else ""
         left = len(values) - MAX_LISTED
@@ -74,24 +74,24 @@ def length_scale(data: xr.Dataset, largest: float, unit: str = "m") -> tuple[flo
     return factor, typeset_unit(word)
 
 
-def lengths(
+def displayed_lengths(
     data: xr.Dataset, values: xr.DataArray, words: str, unit: str = "m"
 ) -> tuple[xr.DataArray, str]:
     """Return lengths, or speeds in ``m/s``, in display units, and the axis label."""
     factor, word = length_scale(data, float(abs(values).max()) if values.size else 1.0, unit)
-    return values / factor, in_unit(words, word)
+    return values / factor, append_unit(words, word)
 
 
-def in_unit(words: str, unit: str, space: str = " ") -> str:
-    return f"{words}{space}in {unit}" if unit else words
+def append_unit(words: str, unit: str, separator: str = " ") -> str:
+    return f"{words}{separator}in {unit}" if unit else words
 
 
-def acceleration_scale(data: xr.Dataset, usual: str = "m/s2") -> tuple[float, str]:
+def acceleration_scale(data: xr.Dataset, default: str = "m/s2") -> tuple[float, str]:
     """Return the divisor from m/s2 to the display unit, and that unit; none of a ratio."""
     word = display_units_of(data).acceleration
     if shows_lengths_as_ratios(data) and not word:
         return 1.0, ""
-    word = word or usual
+    word = word or default
     return FACTORS["acceleration"][word], typeset_unit(word)
 
 
@@ -115,12 +115,14 @@ def axis_values(data: xr.Dataset, parameter: str) -> AxisValues:
             return AxisValues(data.frequency.values / factor, FREQUENCIES[word])
     if parameter == "level":
         factor, word = acceleration_scale(data, "g")
-        return AxisValues(data.level.values / factor, in_unit("peak acceleration of the box", word))
-    factor, label = parameter_scale(data, parameter)
+        return AxisValues(
+            data.level.values / factor, append_unit("peak acceleration of the box", word)
+        )
+    factor, label = parameter_scale_and_label(data, parameter)
     return AxisValues(data[parameter].values / factor, label)
 
 
-def parameter_scale(data: xr.Dataset, parameter: str) -> tuple[float, str]:
+def parameter_scale_and_label(data: xr.Dataset, parameter: str) -> tuple[float, str]:
     """Return the divisor of a parameter's values to display units, and its axis label."""
     factor, word = frequency_scale(data)
     if parameter == "frequency" and (has_frequency_unit(data) or word == "eta"):
@@ -129,20 +131,20 @@ def parameter_scale(data: xr.Dataset, parameter: str) -> tuple[float, str]:
         return factor / omega_of(data), FREQUENCIES[word]
     if parameter in ("amplitude", "clearance") and display_units_of(data).length:
         factor, unit = length_scale(data, 1.0)
-        return factor, f"{symbol(parameter).removesuffix(' m')} {unit}"
-    return 1.0, symbol(parameter)
+        return factor, f"{symbol_with_unit(parameter).removesuffix(' m')} {unit}"
+    return 1.0, symbol_with_unit(parameter)
 
 
-def gap_scale(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
-    """Return the unit of an axis of gaps, m (0: gaps are shown over a eta^2), and its label."""
+def gap_scale_and_label(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
+    """Return an axis' divisor of gaps in m, 0 if they are shown over a eta^2, and its label."""
     length = unit_of_xi(data) if has_frequency_unit(data) or display_units_of(data).length else None
     if length is None:
         return 0.0, XI_REL
     factor, unit = length_scale(data, float((values * length).max()))
-    return factor, in_unit(gap_name(data), unit)
+    return factor, append_unit(gap_name(data), unit)
 
 
 def displayed_gaps(data: xr.Dataset, values: xr.DataArray) -> tuple[xr.DataArray, str]:
     """Convert gaps over a eta^2 to display units; return them and the axis label."""
-    (factor, label), length = gap_scale(data, values), unit_of_xi(data)
+    (factor, label), length = gap_scale_and_label(data, values), unit_of_xi(data)
     return (values * length / factor if factor and length is not None else values), label

@@ -13,8 +13,8 @@ from ..units import display_units_of, with_units
 from .colours import BLACK, BLUE, ORANGE, STRUCTURES
 from .kinds import draws
 from .labels import format_frequency, has_frequency_unit, title_from_attributes
-from .scales import acceleration_scale, frequency_scale, in_unit
-from .style import legend_below, make_panels, styled
+from .scales import acceleration_scale, append_unit, frequency_scale
+from .style import add_figure_legend, make_panels, styled
 
 FLOOR = 1e-6  # of a motor's spectra: the lower end of the axis over the largest amplitude
 SIDES: tuple[dict[str, tuple[str, float, str]], ...] = (  # a thin line lies on a wide one
@@ -60,18 +60,18 @@ def draw_spectra(data: xr.Dataset, title: str = "", mass: int = 1, decades: int 
         top = float(part.max()) or 1.0
         floor = 10.0**-decades * top
         for plane, kinds in zip(axes[2 * index : 2 * index + 2], SIDES, strict=True):
-            draw_side(plane, data, part, kinds, floor)
+            draw_spectra_of_structure(plane, data, part, kinds, floor)
         axes[2 * index].set_ylim(floor, 2.0 * top)
-        axes[2 * index].set_ylabel(in_unit(f"acceleration\nof mass {mass}", unit))
+        axes[2 * index].set_ylabel(append_unit(f"acceleration\nof mass {mass}", unit))
     lines = f"in {frequency_scale(data)[1]}" if with_unit else r"over $\Omega$"
     for plane in axes if with_unit else axes[-2:]:
         plane.set_xlabel(f"frequency of the line {lines}")
     left_out = f"what is below {10.0**-decades:g} of the largest line is left out"
-    legend_below(figure, axes[:2], sum(map(len, SIDES)), title=left_out)
+    add_figure_legend(figure, axes[:2], sum(map(len, SIDES)), title=left_out)
     return figure
 
 
-def draw_side(
+def draw_spectra_of_structure(
     axes: Axes,
     data: xr.Dataset,
     amplitudes: xr.DataArray,
@@ -92,7 +92,7 @@ def draw_side(
 
 @draws("drive_spectra")
 @styled
-def draw_motor_spectra(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
+def draw_drive_spectra(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
     count = data.sizes["kind"]
     figure, axes = make_panels(count, 1, (10, 3.5 * count), title, sharex=True, sharey=True)
     turning = data if display_units_of(data).frequency else with_units(data, "rad/s")
@@ -103,7 +103,7 @@ def draw_motor_spectra(data: xr.Dataset, mass: int = 1, title: str = "") -> Figu
         values, colour = shown.sel(kind=kind).values, STRUCTURES[kind]
         draw_stems(panel, data.order.values, values, FLOOR * top, 1.5, color=colour)
         speed = format_frequency(turning, float(data.speed.sel(kind=kind)))
-        panel.set(title=f"{kind}, {speed}", ylabel=in_unit("acceleration", unit))
+        panel.set(title=f"{kind}, {speed}", ylabel=append_unit("acceleration", unit))
         panel.set_ylim(FLOOR * top, 2.0 * top)
     axes[-1].set_xlabel(r"frequency over the motor's speed $\Omega$")
     return figure

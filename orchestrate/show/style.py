@@ -61,11 +61,11 @@ def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
     """Decorate a drawing function so that our Matplotlib settings hold while it draws."""
 
     @functools.wraps(draw)
-    def drawn(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Figure:
+    def draw_in_style(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Figure:
         with style_context():
             return draw(*args, **kwargs)
 
-    return drawn
+    return draw_in_style
 
 
 def make_panels(
@@ -91,7 +91,7 @@ def draw_line(
     axes.plot(x, y, line, color=colour, linewidth=width, label=label)
 
 
-def legend_below(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more: Any) -> None:
+def add_figure_legend(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more: Any) -> None:
     words: dict[str, Any] = {}
     for plane in axes:
         handles, labels = plane.get_legend_handles_labels()
@@ -101,25 +101,25 @@ def legend_below(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more:
         figure.legend(list(words.values()), list(words), **position, **more)
 
 
-def legend_under(axes: Axes, columns: int = 3) -> None:
+def add_legend_below(axes: Axes, columns: int = 3) -> None:
     if axes.get_legend_handles_labels()[0]:
         below: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.16), "frameon": False}
         axes.legend(ncols=columns, **below)
 
 
-def legend_above(axes: Axes, columns: int = 1) -> None:
-    place: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
-    axes.legend(ncols=columns, **place)
+def add_legend_above(axes: Axes, columns: int = 1) -> None:
+    corner: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
+    axes.legend(ncols=columns, **corner)
 
 
-def write_in_panel(axes: Axes, words: str) -> None:
+def write_in_empty_panel(axes: Axes, words: str) -> None:
     axes.set_yticks([])
     middle: Any = {"transform": axes.transAxes, "ha": "center", "va": "center"}
     axes.text(0.5, 0.5, words, color=GREY, fontsize=11, **middle)
 
 
-def use_plain_log(axes: Axes) -> None:
-    """Set a logarithmic y axis with plain numbers such as 0.02, few enough to read."""
+def set_plain_log_scale(axes: Axes) -> None:
+    """Make the y axis logarithmic with plain numbers such as 0.02, few enough to read."""
     axes.set_yscale("log")
     low, high = axes.get_ylim()
     axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 300.0 * low else (1.0,)))

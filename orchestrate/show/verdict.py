@@ -35,26 +35,26 @@ def make_verdict(answer: xr.Dataset) -> Verdict:
         ),
         "undecided": lambda _: "This record does not tell a delaminated beam from a sound one.",
     }
-    statement = sentences[word](answer) + fitted_frequencies(answer)
+    statement = sentences[word](answer) + frequencies_sentence(answer)
     if wiring := answer.attrs.get("wiring"):
         statement = f"The wiring is doubtful: {wiring}. As it is: {statement}"
     return Verdict(make_sentence(word), statement, TONES.get(word, "open"))
 
 
-def fitted_frequencies(answer: xr.Dataset) -> str:
+def frequencies_sentence(answer: xr.Dataset) -> str:
     """Return a sentence with the natural frequencies of the best stated fit; empty without one."""
     texts = []
-    for best in stated_fits(answer)[:1]:
+    for best in fits_with_values(answer)[:1]:
         for name in best.parameter.values[best.unit.values == "Hz"]:
-            text = format_parameter(best.sel(parameter=name), "Hz")
+            text = format_fitted_value(best.sel(parameter=name), "Hz")
             texts += [f"{name} = {text}"] if text != MISSING else []
     return f" Natural frequencies fitted: {', '.join(texts)}." if texts else ""
 
 
 def delaminated_statement(answer: xr.Dataset) -> str:
-    level = format_level(answer, scalar(answer, "opening_level"))
+    level = base_level_text(answer, scalar_or_nan(answer, "opening_level"))
     lowest = f" from {level} on" if level else ""
-    times = scalar(answer, "ratio") if stated_fits(answer) else math.nan
+    times = scalar_or_nan(answer, "ratio") if fits_with_values(answer) else math.nan
     closer = f": {format_number(times)} times closer to the record than any sound beam"
     sized = f" Two masses size it{closer}." if math.isfinite(times) else ""
     return f"The record is that of two halves that part and strike each other{lowest}.{sized}"
@@ -62,7 +62,7 @@ def delaminated_statement(answer: xr.Dataset) -> str:
 
 def no_opening_statement(answer: xr.Dataset) -> str:
     """Return the statement for no opening seen; it never says that the beam is intact."""
-    smallest = scalar(answer, "smallest_opening")
+    smallest = scalar_or_nan(answer, "smallest_opening")
     seen = ""
     if math.isfinite(smallest):
         shown = answer if display_units_of(answer).length else with_units(answer, "um")
@@ -72,28 +72,28 @@ def no_opening_statement(answer: xr.Dataset) -> str:
             f" Faces at the sensor that part by {opening} or more would have been seen; away from "
             "it an opening may be larger."
         )
-    level = format_level(answer, scalar(answer, "level_high"))
-    ends = scalar(answer, "frequency_low"), scalar(answer, "frequency_high")
-    covered = f"up to {level} over {frequencies_text(answer, *ends)}"
+    level = base_level_text(answer, scalar_or_nan(answer, "level_high"))
+    ends = scalar_or_nan(answer, "frequency_low"), scalar_or_nan(answer, "frequency_high")
+    covered = f"up to {level} over {frequency_range_text(answer, *ends)}"
     return f"No opening of the faces was seen {covered}.{seen}"
 
 
-def scalar(answer: xr.Dataset, name: str) -> float:
+def scalar_or_nan(answer: xr.Dataset, name: str) -> float:
     """Return a scalar variable of a result by its name; NaN if the result lacks it."""
     return float(answer[name]) if name in answer else math.nan
 
 
 def verdict_sections(answer: xr.Dataset) -> list[Section]:
-    front = (decision_section, fits_section, measured_record)
+    front = (decision_section, fits_section, record_section)
     appendix = (parameter_section, misfit_section, assumption_section)
     made = [section_of(answer) for section_of in (*front, *appendix)]
     return [section for section in made if section is not None]
 
 
-def measured_record(answer: xr.Dataset) -> Section | None:
+def record_section(answer: xr.Dataset) -> Section | None:
     words = {str(name): str(text) for name, text in answer.attrs.items()}
     unit = words.get("record_unit", "").replace("m/s2", "m/s²")
-    levels = scalar(answer, "level_low"), scalar(answer, "level_high")
+    levels = scalar_or_nan(answer, "level_low"), scalar_or_nan(answer, "level_high")
     rows = [
         ("file of the record", words.get("record_file", "")),
         ("columns of the file", words.get("record_columns", "")),
@@ -102,10 +102,10 @@ def measured_record(answer: xr.Dataset) -> Section | None:
         ("unit of its numbers", words.get("record_unit_note", "") or unit),
         ("converted", words.get("record_converted", "")),
         ("times", words.get("record_time_base", "")),
-        ("sampling rate", known_text(answer, "sample_rate", "Hz", 6)),
-        ("duration", known_text(answer, "record_duration", "s", 4)),
+        ("sampling rate", number_text(answer, "sample_rate", "Hz", 6)),
+        ("duration", number_text(answer, "record_duration", "s", 4)),
         ("sweep", sweep_text(answer)),
-        ("level of the base, peak", format_level(answer, *levels)),
+        ("level of the base, peak", base_level_text(answer, *levels)),
         ("file of the guess", words.get("guess_file", "")),
         ("command that made it", words.get("command", "")),
     ]
@@ -127,31 +127,31 @@ def participation_text(answer: xr.Dataset) -> str:
     return ", ".join(format_with_error(value, error) for value, error in pairs)
 
 
-def known_text(answer: xr.Dataset, name: str, unit: str, digits: int) -> str:
-    value = scalar(answer, name)
+def number_text(answer: xr.Dataset, name: str, unit: str, digits: int) -> str:
+    value = scalar_or_nan(answer, name)
     return format_number(value, unit, digits) if math.isfinite(value) else ""
 
 
 def sweep_text(answer: xr.Dataset) -> str:
-    low, high = scalar(answer, "sweep_low"), scalar(answer, "sweep_high")
+    low, high = scalar_or_nan(answer, "sweep_low"), scalar_or_nan(answer, "sweep_high")
     if not math.isfinite(low + high):
         return ""
     direction = {"up": "upwards", "down": "downwards", "up and down": "up and down"}
     way = direction.get(str(answer.attrs.get("direction", "")), "")
-    whole = f"{frequencies_text(answer, low, high)} {way}".rstrip()
+    whole = f"{frequency_range_text(answer, low, high)} {way}".rstrip()
     if "frequency" not in answer.coords:
         return whole
     ends = float(answer.frequency.min()), float(answer.frequency.max())
-    return f"{whole}; compared with models: {frequencies_text(answer, *ends)}"
+    return f"{whole}; compared with models: {frequency_range_text(answer, *ends)}"
 
 
-def frequencies_text(answer: xr.Dataset, low: float, high: float) -> str:
+def frequency_range_text(answer: xr.Dataset, low: float, high: float) -> str:
     turn, word = display_scale_of(answer, "Hz")
     first, last = (format_number(end / turn, digits=4) for end in (low, high))
     return f"{first} to {last} {'Omega/omega' if word == 'eta' else word}"
 
 
-def format_level(answer: xr.Dataset, *levels: float) -> str:
+def base_level_text(answer: xr.Dataset, *levels: float) -> str:
     """Format levels of the base in the unit that was asked for; empty where one is not known."""
     felt, unit = display_scale_of(answer, "m/s2")
     numbers = " to ".join(format_number(level / felt) for level in levels)
@@ -199,9 +199,9 @@ def misfit_section(answer: xr.Dataset) -> Section | None:
 def hypothesis_table(answer: xr.Dataset) -> Table:
     """Return a table of the hypotheses, the best fit first; marked: on which the verdict rests."""
     rows = []
-    for one in sort_by_misfit(answer):
+    for one in fits_by_misfit(answer):
         minima = f"{int(np.isfinite(one.minima).sum())}" if "minima" in one else MISSING
-        computed = format_number(scalar(one, "evaluations"), digits=6)
+        computed = format_number(scalar_or_nan(one, "evaluations"), digits=6)
         misfit = format_number(float(one.misfit))
         rows.append((str(one.hypothesis.values), misfit, minima, computed))
     parted = {"delaminated": True, "no opening seen": False}.get(str(answer.verdict.values))
@@ -211,14 +211,14 @@ def hypothesis_table(answer: xr.Dataset) -> Table:
 
 
 def parameter_section(answer: xr.Dataset) -> Section | None:
-    if not (shown := stated_fits(answer)[:3]):
+    if not (shown := fits_with_values(answer)[:3]):
         return None
     names = [str(one.hypothesis.values) if "hypothesis" in one.coords else "value" for one in shown]
     rows = []
     for name in map(str, answer.parameter.values):
         about = answer.sel(parameter=name)
         unit, words = str(about.unit.values), f"{name}, {about.meaning.values}"
-        texts = [format_parameter(one.sel(parameter=name), unit) for one in shown]
+        texts = [format_fitted_value(one.sel(parameter=name), unit) for one in shown]
         if any(text != MISSING for text in texts):
             rows.append((words, *texts))
     text = (
@@ -229,24 +229,24 @@ def parameter_section(answer: xr.Dataset) -> Section | None:
     return Section("Parameters", [text], tables=[table], place="appendix") if rows else None
 
 
-def stated_fits(answer: xr.Dataset) -> list[xr.Dataset]:
+def fits_with_values(answer: xr.Dataset) -> list[xr.Dataset]:
     if "value" not in answer or "parameter" not in answer.dims:
         return []
-    return [one for one in sort_by_misfit(answer) if np.isfinite(one.value).any()]
+    return [one for one in fits_by_misfit(answer) if np.isfinite(one.value).any()]
 
 
-def sort_by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
+def fits_by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
     if "hypothesis" not in answer.dims:
         return [answer]
     ordered = answer.sortby("misfit")
     return [ordered.isel(hypothesis=position) for position in range(ordered.sizes["hypothesis"])]
 
 
-def format_parameter(at: xr.Dataset, unit: str) -> str:
+def format_fitted_value(at: xr.Dataset, unit: str) -> str:
     factor, word = display_scale_of(at, unit)
     if word == "eta":  # a half's own frequency is no ratio to itself
         factor, word = 1.0, unit
-    value, error = float(at.value) / factor, scalar(at, "standard_error") / factor
+    value, error = float(at.value) / factor, scalar_or_nan(at, "standard_error") / factor
     return format_with_error(value, error, word) if math.isfinite(value) else MISSING
 
 

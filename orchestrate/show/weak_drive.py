@@ -22,13 +22,13 @@ from .labels import format_voltage, typeset_unit
 from .passage import HISTORIES, POWER_REVOLUTIONS, has_jump, jump_texts, undecided_directions
 from .scales import label_with_unit
 from .style import (
+    add_figure_legend,
+    add_legend_below,
     draw_line,
-    legend_below,
-    legend_under,
     make_panels,
+    set_plain_log_scale,
     styled,
-    use_plain_log,
-    write_in_panel,
+    write_in_empty_panel,
 )
 
 IMPACT_REVOLUTIONS = 10  # revolutions that impacts are averaged over
@@ -37,7 +37,7 @@ FOLD: Any = {"color": GREY, "linewidth": 1.0, "linestyle": ":", "label": "fold, 
 DOUBT: Any = {"color": ORANGE, "alpha": 0.3, "linewidth": 0.0, "label": "undecided between"}
 
 
-@draws("couple", beside=OTHER)
+@draws("couple", partner=OTHER)
 @styled
 def draw_ramps(
     runs: Mapping[str, xr.Dataset],
@@ -48,7 +48,7 @@ def draw_ramps(
     shown = {name: drop_spin_up(in_display_units(data)) for name, data in runs.items()}
     figure, axes = make_panels(2, 2, (11, 9.4), title)
     for name, data in shown.items():
-        for part, style, direction in split_directions(data):
+        for part, style, direction in split_there_and_back(data):
             line: Any = {"color": STRUCTURES[name], "linewidth": 1.2}
             draw_speed_curves(axes, data, part, style, **line, label=f"{name}, {direction}")
             if name == "delaminated":
@@ -60,26 +60,26 @@ def draw_ramps(
         draw_branches(axes, in_display_units(branches).sel(structure=list(runs)))
     name = list(runs)[-1]
     draw_outward_powers(axes[3], shown[name], name)
-    axes[0].set_title("\n".join(format_jumps(*item) for item in runs.items()))
-    label_axes(axes, shown[name])
+    axes[0].set_title("\n".join(format_jumps_of_run(*item) for item in runs.items()))
+    label_speed_axes(axes, shown[name])
     axes[2].set(xlabel=axes[1].get_xlabel(), ylabel="impacts in a revolution")
     axes[3].set(xlabel=axes[1].get_xlabel(), ylabel="power in W")
-    legend_below(figure, axes[:2], title="upper panels")
+    add_figure_legend(figure, axes[:2], title="upper panels")
     for panel in axes[2:]:
-        legend_under(panel)
+        add_legend_below(panel)
     limit_axes(axes, list(shown.values()))
     return figure
 
 
 @styled
-def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
+def draw_jump_histories(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
     shown = {name: in_display_units(data) for name, data in runs.items()}
     jumps = [way for way in ("up", "down") if any(has_jump(data, way) for data in shown.values())]
     rows = max(len(jumps), 1)
     figure, axes = make_panels(rows, 2, (10, 0.8 + 3.6 * rows), title)
     for number, panel in enumerate(axes):
         if not jumps:
-            write_in_panel(panel, "no jump")
+            write_in_empty_panel(panel, "no jump")
             continue
         jump, what = jumps[number // 2], list(HISTORIES)[number % 2]
         for name, data in shown.items():
@@ -92,13 +92,13 @@ def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
                 panel.plot(time[near], values, color=STRUCTURES[name], label=label)
                 panel.set_ylabel(label_with_unit(HISTORIES[what], data[what]))
         panel.set_xlabel(f"time from the jump {jump} in s")
-        legend_under(panel)
+        add_legend_below(panel)
     return figure
 
 
 @draws("drive_branch")
 @styled
-def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
+def draw_drive_branches(branches: xr.Dataset, title: str = "") -> Figure:
     figure, axes = make_panels(1, 2, (12, 5), title)
     branches = in_display_units(branches)
     draw_branches(axes, branches)
@@ -110,17 +110,17 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
             marker = BIFURCATION_MARKS[str(kind)]
             axes[0].plot(at.bifurcation_voltage, at.bifurcation_speed, marker, **mark)
             axes[1].plot(at.bifurcation_speed, at.bifurcation_amplitude, marker, **mark)
-    label_axes(axes, branches)
-    legend_below(figure, axes[:1])
+    label_speed_axes(axes, branches)
+    add_figure_legend(figure, axes[:1])
     return figure
 
 
 def draw_speed_curves(
     axes: Sequence[Axes], data: xr.Dataset, part: np.ndarray, style: str, **line: Any
 ) -> None:
-    voltage, speed, amplitude = (data[of].values for of in ("voltage", "speed", "amplitude"))
+    voltage, speed, amplitude = (data[name].values for name in ("voltage", "speed", "amplitude"))
     if part.dtype == bool:
-        voltage, amplitude = (np.where(part, of, np.nan) for of in (voltage, amplitude))
+        voltage, amplitude = (np.where(part, values, np.nan) for values in (voltage, amplitude))
     else:
         voltage, speed, amplitude = voltage[part], speed[part], amplitude[part]
     axes[0].plot(voltage, speed, style, **line)
@@ -158,11 +158,11 @@ def drop_spin_up(data: xr.Dataset) -> xr.Dataset:
     return data.isel(revolution=slice(end, None)) if early else data
 
 
-def format_jumps(name: str, data: xr.Dataset) -> str:
+def format_jumps_of_run(name: str, data: xr.Dataset) -> str:
     return f"{name}: jump {', '.join(jump_texts(data))}" if jump_texts(data) else f"{name}: no jump"
 
 
-def split_directions(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
+def split_there_and_back(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
     """Return a run's revolutions there and back as index arrays, each with style and name."""
     voltage = data.voltage.values
     turn = int(np.argmax(np.abs(voltage - voltage[0]))) or len(voltage) - 1  # or a constant voltage
@@ -185,7 +185,7 @@ def draw_impacts(axes: Axes, data: xr.Dataset, direction: str) -> None:
         x, y = (running_mean(values, IMPACT_REVOLUTIONS) for values in (speed, count))
         draw_line(axes, x, y, style, colour, 1.2, label)
     if count.size and count.max() > 10.0:
-        use_plain_log(axes)
+        set_plain_log_scale(axes)
 
 
 def mark_jumps(axes: Axes, data: xr.Dataset, name: str) -> None:
@@ -200,19 +200,19 @@ def mark_jumps(axes: Axes, data: xr.Dataset, name: str) -> None:
 
 
 def draw_outward_powers(axes: Axes, data: xr.Dataset, name: str) -> None:
-    outward = split_directions(data)[0][0]
+    outward = split_there_and_back(data)[0][0]
     if len(outward) < 3 * POWER_REVOLUTIONS:
         return
     part = data.isel(revolution=outward)
     speed = running_mean(part.speed.values[1:], POWER_REVOLUTIONS)
     powers = {"speed": speed, **passage.mean_powers(part)}
-    twice = {of: running_mean(values, POWER_REVOLUTIONS) for of, values in powers.items()}
+    twice = {account: running_mean(values, POWER_REVOLUTIONS) for account, values in powers.items()}
     passage.draw_powers(axes, twice["speed"], twice)
     means = f"means of {POWER_REVOLUTIONS} revolutions, taken twice"
     axes.set_title(f"power on the way there, {name}\n{means}")
 
 
-def label_axes(axes: Sequence[Axes], data: xr.Dataset) -> None:
+def label_speed_axes(axes: Sequence[Axes], data: xr.Dataset) -> None:
     speed, amplitude = (label_with_unit(HISTORIES[name], data[name]) for name in HISTORIES)
     axes[0].set(xlabel="voltage in V", ylabel=speed)
     axes[1].set(xlabel=speed, ylabel=amplitude)
@@ -233,7 +233,7 @@ def limit_axes(axes: Sequence[Axes], runs: Sequence[xr.Dataset]) -> None:
 # -- starts from rest -----------------------------------------------------------------------------
 
 
-@draws("capture", beside=OTHER)
+@draws("capture", partner=OTHER)
 @styled
 def draw_capture(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
     size = (5.5 * len(maps), 4.5)
@@ -247,7 +247,7 @@ def draw_capture(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
         else:
             draw_passage_times(panel, data)
         panel.label_outer()
-        legend_under(panel, columns=3)
+        add_legend_below(panel, columns=3)
     return figure
 
 

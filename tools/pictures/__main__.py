@@ -54,9 +54,9 @@ def draw_verdict() -> Figure:
     return beam.draw_verdicts(records)
 
 
-def draw_states() -> Figure:
+def draw_phase_curves_by_state() -> Figure:
     motion = orchestrate.simulate(PAPER, eta=0.4, transient=100, periods=1, points=1200)
-    return theory.draw_states(motion)
+    return theory.draw_phase_curves_by_state(motion)
 
 
 def draw_engineer_card() -> Figure:
@@ -108,7 +108,7 @@ PICTURES: dict[str, Callable[[], Figure]] = {
     "engineer": draw_engineer_card,
     "researcher": draw_researcher_card,
     "fmu": fmu.draw_block,
-    "states": draw_states,
+    "states": draw_phase_curves_by_state,
     "certificate": theory.draw_certificate,
     "spectra": draw_spectra,
     "level": level.draw_controlled_sweep,

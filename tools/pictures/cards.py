@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from orchestrate.show.colours import BLACK, BLUE, RED
-from orchestrate.show.style import legend_below, make_panels, styled
+from orchestrate.show.style import add_figure_legend, make_panels, styled
 
 SIZE = (3.8, 2.9)
 STYLES: dict[str, dict[str, Any]] = {
@@ -31,7 +31,7 @@ def draw_resonance(curves: xr.Dataset) -> Figure:
         amplitude = curves.x1_max.sel(structure=name, direction="up")
         axes.plot(curves.hertz, 1e3 * amplitude, linewidth=1.8, label=name, **style)
     axes.set(xlabel="frequency in Hz", ylabel="amplitude in mm")
-    legend_below(figure, [axes])
+    add_figure_legend(figure, [axes])
     return figure
 
 

@@ -22,7 +22,7 @@ STEPS = 5  # towards the root that are drawn
 
 
 @styled
-def draw_states(data: xr.Dataset) -> Figure:
+def draw_phase_curves_by_state(data: xr.Dataset) -> Figure:
     figure, (gap, force) = make_panels(2, 1, (9.0, 4.6), sharex=True, height_ratios=(2, 1))
     turns = data.periods_done.values - float(data.periods_done[0])
     gap.plot(turns, data.x_rel, color=BLACK, linewidth=1.3)
