@@ -196,5 +196,9 @@ class Paper(InFolder, HowRun, Command):
         figures = None if self.figures is None else self.figures.split(",")
         resolution = QUICK if self.quick else FULL
         outcome = reproduce(output, resolution, figures, self.running_keywords())
-        lines = [*claim_lines(outcome.found), *outcome.pictures.values(), outcome.report]
+        lines = [
+            *claim_lines(outcome.claims_and_regions),
+            *outcome.pictures.values(),
+            outcome.report,
+        ]
         print(*lines, sep="\n")

@@ -21,7 +21,7 @@ WORDS = {
 class Measured(NamedTuple):
     """What was measured: a text with the numbers, and which parts of the claim hold."""
 
-    found: str
+    text: str
     parts: Sequence[bool]
 
 
@@ -41,21 +41,21 @@ class Claim:
     full: str  # not empty: it takes the paper's 500 periods, or many starts, to decide
     why: str  # what a reader has to know where it differs
 
-    def keywords(self) -> dict[str, Any]:
+    def parse_arguments(self) -> dict[str, Any]:
         """Return the measure's further arguments, numbers as floats."""
         pairs = (word.split("=") for word in self.arguments.split())
         return {name: float(x) if x[0].isdigit() and "T" not in x else x for name, x in pairs}
 
     @property
-    def slack(self) -> float:
+    def rounding_tolerance(self) -> float:
         """Half a unit of the printed number's last digit, the tolerance of rounding."""
         return 0.5 * 10.0 ** -len(self.printed.partition(".")[2]) + 1e-9
 
-    def rounds(self, value: float) -> bool:
-        return abs(value - float(self.printed)) <= self.slack
+    def is_rounded_to_printed(self, value: float) -> bool:
+        return abs(value - float(self.printed)) <= self.rounding_tolerance
 
 
-def read_table() -> list[Claim]:
+def read_claims() -> list[Claim]:
     text = resources.files("orchestrate.paper").joinpath("claims.csv").read_text("utf-8")
     return [Claim(**row) for row in csv.DictReader(text.splitlines())]
 
@@ -75,12 +75,14 @@ def judge(parts: Iterable[bool], decides: bool = True) -> str:
 
 
 SIGNS = {"+-": "±", "<=": "≤", ">=": "≥"}
-MEANT = {"nan": "not found", "True": "yes", "False": "no", "inf": "without bound"}
+WORDS_OF_VALUES = {"nan": "not found", "True": "yes", "False": "no", "inf": "without bound"}
 
 
-def in_words(text: str) -> str:
+def replace_symbols_by_words(text: str) -> str:
     """Return a sentence with nan, True, inf and +- replaced by words and signs."""
-    text = re.sub(rf"\b({'|'.join(MEANT)})\b", lambda match: MEANT[match[0]], text)
+    text = re.sub(
+        rf"\b({'|'.join(WORDS_OF_VALUES)})\b", lambda match: WORDS_OF_VALUES[match[0]], text
+    )
     for sign, better in SIGNS.items():
         text = text.replace(sign, better)
     return text

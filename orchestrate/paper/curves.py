@@ -27,7 +27,9 @@ class Panel(NamedTuple):
     multiplicity: int
 
 
-def trace(panel: Panel, periods: int, points: int, running: Mapping[str, Any]) -> dict[str, Any]:
+def trace_curve(
+    panel: Panel, periods: int, points: int, running: Mapping[str, Any]
+) -> dict[str, Any]:
     """Return times tau, states and kinds of a motion: samples, and two points at each impact."""
     structure, eta, start, _ = panel
     common: dict[str, Any] = {"eta": eta, "start": start, "periods": periods, **running}
@@ -43,19 +45,19 @@ def trace(panel: Panel, periods: int, points: int, running: Mapping[str, Any]) -
     sticks = section.sticks.values.astype(bool)
     contact = np.concatenate([motion.in_contact.values, np.zeros(len(closing)), sticks])
     order = np.lexsort((np.repeat([0, 1, 2], [len(rows) for rows, _ in pieces]), time))
-    kind = np.where(chatters(time, section.time.values, sticks), SEQUENCE, FLIGHT)
+    kind = np.where(lies_in_chattering(time, section.time.values, sticks), SEQUENCE, FLIGHT)
     kind[contact.astype(bool)] = CONTACT
     return {"tau": time[order] * structure.omega, "state": state[order], "kind": kind[order]}
 
 
-def chatters(time: np.ndarray, impacts: np.ndarray, sticks: np.ndarray) -> np.ndarray:
+def lies_in_chattering(time: np.ndarray, impact_time: np.ndarray, sticks: np.ndarray) -> np.ndarray:
     """Return whether times lie in flights, each shorter than the one before, that end sticking."""
-    within, flights = np.zeros(len(time), dtype=bool), np.diff(impacts)
+    within, flights = np.zeros(len(time), dtype=bool), np.diff(impact_time)
     for stick in np.flatnonzero(sticks).tolist():
         first = stick
         while first > 1 and flights[first - 1] < flights[first - 2] and not sticks[first - 1]:
             first -= 1
-        within |= (time >= impacts[max(first - 1, 0)]) & (time <= impacts[stick])
+        within |= (time >= impact_time[max(first - 1, 0)]) & (time <= impact_time[stick])
     return within
 
 

@@ -20,8 +20,8 @@ from ..running.store import write_netcdf
 from ..weak_drive import averaged
 from . import cases
 from .cases import CASES
-from .curves import Panel, curves_dataset, trace
-from .reading import Region, between, list_regions, relative_peak
+from .curves import Panel, curves_dataset, trace_curve
+from .reading import Region, between, list_regions, relative_peak_eta
 from .resolution import Resolution
 
 SETTLED: dict[str, Any] = {"samples": 48, "tolerance": 1e-6}  # periods kept; what has repeated
@@ -36,54 +36,60 @@ class Datasets:
         self.folder, self.size, self.running = folder, size, dict(running)
         self.known: dict[str, Any] = {}
 
-    def get(self, name: str, function: Answer, *what: Any, **keywords: Any) -> xr.Dataset:
+    def get_or_compute(
+        self, name: str, function: Answer, *arguments: Any, **keywords: Any
+    ) -> xr.Dataset:
         if name not in self.known:
             store = self.folder / f"{name}.nc"
-            self.known[name] = function(*what, **keywords, **self.running, store=store)
+            self.known[name] = function(*arguments, **keywords, **self.running, store=store)
         return self.known[name]
 
     # -- sweeps and what follows from their responses ----------------------------------------------
 
     def sweep(self, case: str, direction: str) -> xr.Dataset:
         name, eta = f"orbit_{CASES[case].label()}_{direction}", self.size.etas()
-        more = {"direction": direction, **self.protocol()}
-        return self.get(name, orchestrate.sweep, CASES[case], eta=eta, **more)
+        more = {"direction": direction, **self.period_keywords()}
+        return self.get_or_compute(name, orchestrate.sweep, CASES[case], eta=eta, **more)
 
-    def protocol(self) -> dict[str, Any]:
+    def period_keywords(self) -> dict[str, Any]:
         """Return as keywords the periods dropped and kept: n = 500(1)700 has both ends."""
         return {"transient": self.size.transient - 1, "samples": self.size.samples + 1}
 
-    def up(self, case: str) -> xr.Dataset:
+    def up_sweep(self, case: str) -> xr.Dataset:
         return self.sweep(case, "up")
 
-    def down(self, case: str) -> xr.Dataset:
+    def down_sweep(self, case: str) -> xr.Dataset:
         return self.sweep(case, "down")
 
-    def impacts(self, case: str) -> xr.Dataset:
+    def impact_statistics(self, case: str) -> xr.Dataset:
         name, eta = f"steady_{CASES[case].label()}_up", self.size.etas()
-        more = {"start": self.up(case), "transient": 0, "periods": self.size.steady}
-        return self.get(name, orchestrate.impact_statistics, CASES[case], eta=eta, **more)
+        more = {"start": self.up_sweep(case), "transient": 0, "periods": self.size.steady}
+        return self.get_or_compute(
+            name, orchestrate.impact_statistics, CASES[case], eta=eta, **more
+        )
 
-    def later(self, first: int, count: int | None = None) -> xr.Dataset:
+    def continued_sweep(self, first: int, count: int | None = None) -> xr.Dataset:
         """Return the elastic up-sweep's responses sampled from n = first on; of all or a few."""
         size, etas = self.size, np.array(self.size.etas())
         if count is not None:
             etas = np.sort(np.random.default_rng(500).choice(etas, count, replace=False))
         done = size.transient + size.samples  # the sweep's last n
         more = {"transient": first - 1 - done, "samples": size.samples + 1}
-        start = self.up("elastic")
-        return self.get(f"later_{first}", orchestrate.sweep, ELASTIC, eta=etas, start=start, **more)
+        start = self.up_sweep("elastic")
+        return self.get_or_compute(
+            f"later_{first}", orchestrate.sweep, ELASTIC, eta=etas, start=start, **more
+        )
 
-    def settled(self, case: str) -> xr.Dataset:
+    def settled_responses(self, case: str) -> xr.Dataset:
         """Return each fifth response of the up-sweep from eta = 0.43, run on until it repeats."""
         name = f"settled_{CASES[case].label()}_up"
         if name not in self.known:
-            before, parts, done = self.up(case), [], 0
+            before, parts, done = self.up_sweep(case), [], 0
             etas = before.eta.values[before.eta.values >= 0.43][::5]
             for stage, periods in enumerate(self.size.stages):
                 more = {"start": before, "transient": periods, **SETTLED}
                 stored = f"{name}_{stage}"
-                part = self.get(stored, orchestrate.sweep, CASES[case], eta=etas, **more)
+                part = self.get_or_compute(stored, orchestrate.sweep, CASES[case], eta=etas, **more)
                 before, done = part, done + periods + part.sizes["sample"]
                 repeats = (part.multiplicity_decided == REPEATED).values
                 kept = part.drop_dims("sample").assign(
@@ -98,69 +104,83 @@ class Datasets:
             self.known[name] = xr.concat(parts, "eta").sortby("eta")
         return self.known[name]
 
-    def exponent(self, case: str) -> xr.Dataset:
-        name, settled = f"exponent_{CASES[case].label()}", self.settled(case)
+    def lyapunov_exponents(self, case: str) -> xr.Dataset:
+        name, settled = f"exponent_{CASES[case].label()}", self.settled_responses(case)
         more = {"start": settled, "transient": 0, "periods": self.size.long_run}
-        return self.get(name, orchestrate.lyapunov, CASES[case], eta=settled.eta.values, **more)
+        return self.get_or_compute(
+            name, orchestrate.lyapunov, CASES[case], eta=settled.eta.values, **more
+        )
 
-    def largest(self, case: str) -> xr.Dataset:
+    def largest_exponents(self, case: str) -> xr.Dataset:
         """Return exponents of longer runs at the two eta of each region where they are largest."""
         etas: set[float] = set()
         for region in self.regions(case):
-            part = between(self.exponent(case), region.low, region.high).exponent
+            part = between(self.lyapunov_exponents(case), region.low, region.high).exponent
             etas |= set(part.eta.values[np.argsort(-part.values, kind="stable")[:2]].tolist())
         name, size = f"largest_{CASES[case].label()}", self.size
-        more = {"start": self.settled(case), "transient": size.part, "periods": 5 * size.part}
-        return self.get(name, orchestrate.lyapunov, CASES[case], eta=sorted(etas), **more)
+        more = {
+            "start": self.settled_responses(case),
+            "transient": size.part,
+            "periods": 5 * size.part,
+        }
+        return self.get_or_compute(
+            name, orchestrate.lyapunov, CASES[case], eta=sorted(etas), **more
+        )
 
     # -- exact limits ------------------------------------------------------------------------------
 
-    def windows(self, case: str, orbit: str) -> list[StableWindow]:
+    def windows_of_branch(self, case: str, orbit: str) -> list[StableWindow]:
         """Return the stable windows of the branch through the up-sweep's response, upwards."""
         eta, period, limits = cases.BRANCHES[case][orbit]
-        guess = self.up(case).end_state.sel(eta=eta, method="nearest").values
+        guess = self.up_sweep(case).end_state.sel(eta=eta, method="nearest").values
         name = f"{CASES[case].label()}_{orbit.replace('/', '-').replace(', ', '-')}"
         first = {"eta": eta, "period": period, "guess": guess}
-        start = self.get(f"orbit_{name}", orchestrate.orbit, CASES[case], **first)
+        start = self.get_or_compute(f"orbit_{name}", orchestrate.orbit, CASES[case], **first)
         along = {"start": start, "limits": limits}
-        branch = self.get(f"branch_{name}", orchestrate.branch, CASES[case], **along)
+        branch = self.get_or_compute(f"branch_{name}", orchestrate.branch, CASES[case], **along)
         return sorted(stable_windows(branch))
 
-    def window(self, case: str, orbit: str, inside: float) -> StableWindow:
-        windows = self.windows(case, orbit)
-        return min(windows, key=lambda one: max(one.low - inside, inside - one.high, 0.0))
+    def window_nearest(self, case: str, orbit: str, eta: float) -> StableWindow:
+        windows = self.windows_of_branch(case, orbit)
+        return min(windows, key=lambda one: max(one.low - eta, eta - one.high, 0.0))
 
     def regions(self, case: str) -> list[Region]:
         """Return a case's windows and what lies between that hold more than one frequency."""
-        listed = list_regions(lambda orbit, inside: self.window(case, orbit, inside))
-        return [one for one in listed if between(self.settled(case), *one[:2]).sizes["eta"] > 1]
+        listed = list_regions(lambda orbit, eta: self.window_nearest(case, orbit, eta))
+        return [
+            one
+            for one in listed
+            if between(self.settled_responses(case), *one[:2]).sizes["eta"] > 1
+        ]
 
-    def shares(self, case: str, low: float, high: float) -> tuple[float, float]:
+    def shares_chaotic_and_neutral(self, case: str, low: float, high: float) -> tuple[float, float]:
         """Return the shares of responses between two frequencies that are chaotic, and neutral."""
-        verdicts = between(self.exponent(case), low, high).verdict.values
-        repeats = between(self.settled(case), low, high).multiplicity.values > 0
+        verdicts = between(self.lyapunov_exponents(case), low, high).verdict.values
+        repeats = between(self.settled_responses(case), low, high).multiplicity.values > 0
         chaotic, neutral = (np.mean((verdicts == kind) & ~repeats) for kind in (CHAOTIC, NEUTRAL))
         return float(chaotic), float(neutral)
 
-    def last_contact(self, case: str) -> np.ndarray:
+    def last_eta_with_contact(self, case: str) -> np.ndarray:
         """Return the last eta with permanent contact on short sweeps from rest, for each gamma."""
         last = []
         for gamma in cases.GAMMAS:
             etas = np.round(np.arange(*cases.CONTACT_RANGES[case], 0.001), 9)
             name = f"contact_{CASES[case].label()}_gamma{gamma:g}"
             more = {"eta": etas, "transient": 250, "samples": 40}
-            one = self.get(name, orchestrate.sweep, CASES[case].replace(gamma=gamma), **more)
+            one = self.get_or_compute(
+                name, orchestrate.sweep, CASES[case].replace(gamma=gamma), **more
+            )
             touching = one.eta.values[one.permanent_contact.values == 1]
             last.append(touching[-1] if len(touching) else np.nan)
         return np.array(last)
 
     # -- single motions ----------------------------------------------------------------------------
 
-    def chattering(self) -> xr.Dataset:
+    def chattering_by_restitution(self) -> xr.Dataset:
         """Return what follows one kick of masses that lie together, for each e and gamma (16)."""
         if "chattering" not in self.known:
             rows = [
-                self.sequence(ELASTIC.replace(e=e, gamma=gamma))
+                self.measure_chattering(ELASTIC.replace(e=e, gamma=gamma))
                 for e in cases.RESTITUTIONS
                 for gamma in cases.STICKING_GAMMAS
             ]
@@ -171,7 +191,7 @@ class Datasets:
             self.known["chattering"] = xr.Dataset(variables, coordinates)
         return self.known["chattering"]
 
-    def sequence(self, structure: Structure) -> list[float]:
+    def measure_chattering(self, structure: Structure) -> list[float]:
         """Return impacts until the masses stick, whether they do, how far ratios are from e."""
         middle = (1.0 + structure.mu) / (1.0 + structure.kappa)  # (6) without rates
         parting, share = 0.01 * ((1.0 - structure.e) or 1.0), structure.mu / (1.0 + structure.mu)
@@ -188,19 +208,19 @@ class Datasets:
         away = np.abs(ratios - structure.e).max(initial=0.0) if len(ratios) else np.nan
         return [len(times), sticks.any(), away]
 
-    def slow_impacts(self) -> xr.Dataset:
+    def slow_impact_counts(self) -> xr.Dataset:
         """Return counts of impacts from rest: all, sticking, slower than gamma, pulled of these."""
         if "slow_impacts" not in self.known:
             alike = [(ELASTIC.replace(mu=mu, kappa=kappa), 1.3) for mu, kappa in ALIKE]
             etas = np.round(np.arange(0.45, 8.0, 0.15), 3).tolist()
             motions = [*((ELASTIC, eta) for eta in etas), *alike]
-            rows = [self.count_impacts(*motion) for motion in motions]
+            rows = [self.count_slow_impacts(*motion) for motion in motions]
             names = "mu", "kappa", "impacts", "sticking", "slow", "pulled"
             columns = zip(names, np.transpose(rows), strict=True)
             self.known["slow_impacts"] = xr.Dataset({k: ("motion", v) for k, v in columns})
         return self.known["slow_impacts"]
 
-    def count_impacts(self, structure: Structure, eta: float) -> list[float]:
+    def count_slow_impacts(self, structure: Structure, eta: float) -> list[float]:
         """Return mu, kappa and the counts of one motion in 2,000 periods from rest."""
         found = orchestrate.poincare(
             structure, eta=eta, at="impacts", transient=0, periods=2000, **self.running
@@ -210,72 +230,72 @@ class Datasets:
         pulled = slow & ((1.0 - kappa / mu) * found.x1.values >= 0.0)  # (18) with D_1 = D_2
         return [mu, kappa, len(closing), found.sticks.sum().item(), slow.sum(), pulled.sum()]
 
-    def figure(self, number: str) -> xr.Dataset:
+    def figure_curves(self, number: str) -> xr.Dataset:
         """Return the curves of Figure 5, 7, 8, 9 or 12, and write them next to the results."""
         name = f"figure{number}"
         if name not in self.known:
             etas, keep, points = cases.PANELS[number]
             chosen = CASES if number == "12" else ("elastic",)
-            panels = [panel for case in chosen for panel in self.panels(number, case, etas)]
+            panels = [panel for case in chosen for panel in self.figure_panels(number, case, etas)]
             keep = keep or self.size.keep
-            curves = [trace(panel, keep, points, self.running) for panel in panels]
+            curves = [trace_curve(panel, keep, points, self.running) for panel in panels]
             self.known[name] = curves_dataset(panels, curves)
             write_netcdf(self.known[name], self.folder / f"{name}.nc")
         return self.known[name]
 
-    def panels(self, number: str, case: str, etas: tuple[float, ...]) -> list[Panel]:
-        swept = self.up(case) if number != "7" else self.beyond()
+    def figure_panels(self, number: str, case: str, etas: tuple[float, ...]) -> list[Panel]:
+        swept = self.up_sweep(case) if number != "7" else self.up_sweep_to_9()
         if number == "7":
-            etas = tuple(eta for n in range(1, 5) if (eta := relative_peak(swept, n)))
+            etas = tuple(eta for n in range(1, 5) if (eta := relative_peak_eta(swept, n)))
         elif number == "12":
             etas = (float(swept.xi_rel_max.idxmax()),)
         chosen = swept.sel(eta=list(etas), method="nearest")
         name, etas = f"figure{number}_{CASES[case].label()}_settled", chosen.eta.values
         more = {"start": chosen, "transient": self.size.skip, **SETTLED}
-        found = self.get(name, orchestrate.sweep, CASES[case], eta=etas, **more)
+        found = self.get_or_compute(name, orchestrate.sweep, CASES[case], eta=etas, **more)
         n = found.multiplicity.where(found.multiplicity_decided == REPEATED, 0).values.astype(int)
         rows = zip(found.eta.values.tolist(), found.end_state.values, n.tolist(), strict=True)
         return [Panel(CASES[case], *row) for row in rows]
 
-    def beyond(self) -> xr.Dataset:
+    def up_sweep_to_9(self) -> xr.Dataset:
         """Return the elastic up-sweep, continued to 9.0: the window 4T has its peak above 8.0."""
-        up, etas = self.up("elastic"), np.arange(8001, 9001) / 1000.0
-        more = {"start": up.end_state[-1].values, **self.protocol()}
-        beyond = self.get("orbit_beyond", orchestrate.sweep, ELASTIC, eta=etas, **more)
+        up, etas = self.up_sweep("elastic"), np.arange(8001, 9001) / 1000.0
+        more = {"start": up.end_state[-1].values, **self.period_keywords()}
+        beyond = self.get_or_compute("orbit_beyond", orchestrate.sweep, ELASTIC, eta=etas, **more)
         return xr.concat([up, beyond], "eta", join="exact")  # the same samples
 
     # -- beyond the paper --------------------------------------------------------------------------
 
-    def settling(self) -> dict[str, Any]:
+    def settling_keywords(self) -> dict[str, Any]:
         """Return as keywords how long responses from many starts are run."""
         settings = AttractorSettings(longest=self.size.settle_most)
         return {"transient": self.size.settle, "settings": settings}
 
     def attractors(self) -> xr.Dataset:
         etas = self.size.attractor_etas()
-        more = {"starts": self.size.starts, "seed": 2026, **self.settling()}
-        return self.get("attractors", orchestrate.attractors, ELASTIC, eta=etas, **more)
+        more = {"starts": self.size.starts, "seed": 2026, **self.settling_keywords()}
+        return self.get_or_compute("attractors", orchestrate.attractors, ELASTIC, eta=etas, **more)
 
     def basin(self) -> xr.Dataset:
         found = between(self.attractors(), 1.07, 1.37)
         at = found.isel(eta=index_of_most_even_shares(found))
         middle = np.nanmean(at.state.values[np.argsort(-at.share.values, kind="stable")[:2]], 0)
         eta, side = float(at.eta), self.size.basin
-        reach = 3.0 * float(self.up("elastic").xi_rel_max.sel(eta=eta, method="nearest"))
+        reach = 3.0 * float(self.up_sweep("elastic").xi_rel_max.sel(eta=eta, method="nearest"))
         plane = {"x": ("x_rel", 0.0, reach, side), "y": ("v_rel", -reach, reach, side)}
-        more = {"at": middle, **plane, **self.settling()}
-        return self.get("basin", orchestrate.basin, ELASTIC, eta=eta, **more)
+        more = {"at": middle, **plane, **self.settling_keywords()}
+        return self.get_or_compute("basin", orchestrate.basin, ELASTIC, eta=eta, **more)
 
     def map(self, parameter: str) -> xr.Dataset:
         size, etas = self.size, np.linspace(*cases.MAP_ETAS, self.size.map_etas)
         spaced = np.geomspace if parameter == "D" else np.linspace
         axes = {"eta": etas, parameter: spaced(*cases.MAPS[parameter], size.map_rows)}
         more = {"transient": size.map_settle, "samples": size.map_keep}
-        return self.get(f"map_{parameter}", orchestrate.map, ELASTIC, **axes, **more)
+        return self.get_or_compute(f"map_{parameter}", orchestrate.map, ELASTIC, **axes, **more)
 
     def spectra(self) -> xr.Dataset:
-        etas = float(self.up("elastic").xi_rel_max.idxmax()), 0.4, 1.13
-        return self.get("spectra", orchestrate.spectra, ELASTIC, eta=etas)
+        etas = float(self.up_sweep("elastic").xi_rel_max.idxmax()), 0.4, 1.13
+        return self.get_or_compute("spectra", orchestrate.spectra, ELASTIC, eta=etas)
 
     def ramp(self, kind: str) -> xr.Dataset:
         """Return a slow voltage ramp of the set ``rig`` up to its fold, bonded or delaminated."""
@@ -286,17 +306,17 @@ class Datasets:
         rate = self.size.ramp_rate * volts * structure.omega
         one = structure.as_bonded() if kind == "bonded" else structure.as_delaminated()
         more = {"voltage": ends, "rate": rate, "back": False}
-        return self.get(f"ramp_{kind}", orchestrate.couple, one, drive, **more)
+        return self.get_or_compute(f"ramp_{kind}", orchestrate.couple, one, drive, **more)
 
 
 ALIKE = ((1, 1), (2, 2), (2, 2.2))  # mu, kappa
 
 
-def index_of_most_even_shares(data: xr.Dataset, apart: float = 0.2) -> int:
+def index_of_most_even_shares(data: xr.Dataset, min_difference: float = 0.2) -> int:
     """Return the index of the eta at which two periodic attractors share starts most evenly."""
     frequent = np.argsort(-data.share.values, axis=1, kind="stable")[:, :2]
     names = "share", "impacts_per_period", "multiplicity"
     share, impacts, n = (np.take_along_axis(data[x].values, frequent, axis=1) for x in names)
-    clear = (n > 0).all(axis=1) & (np.abs(impacts[:, 0] - impacts[:, -1]) > apart)
+    clear = (n > 0).all(axis=1) & (np.abs(impacts[:, 0] - impacts[:, -1]) > min_difference)
     least = np.where(clear, share[:, -1], 0.0)
     return int((least if least.max() > 0.0 else share[:, -1]).argmax())

@@ -27,7 +27,7 @@ CURVES = (
 
 
 @dataclass(frozen=True)
-class Section:
+class PicturePart:
     """A part of the report: a picture, its texts, and the results it shows."""
 
     # `method` says how it was computed
@@ -39,7 +39,7 @@ class Section:
     files: tuple[str, ...]  # their files' names
 
 
-def orbit_diagram_section(number: str, case: str) -> Section:
+def orbit_diagram_part(number: str, case: str) -> PicturePart:
     structure = CASES[case]
     text = (
         f"Bifurcation diagram for e = {structure.e:g}, D = {structure.get('D'):g}: all "
@@ -47,21 +47,21 @@ def orbit_diagram_section(number: str, case: str) -> Section:
         "axis is logarithmic down to its grey part, and linear in it, down to 0."
     )
     file = f"orbit_{structure.label()}_up"
-    show: Any = lines.draw_sweep, lambda data: [data.up(case)], (file,)
-    return Section(f"Figure {number}", text, ORBIT, *show)
+    show: Any = lines.draw_sweep, lambda data: [data.up_sweep(case)], (file,)
+    return PicturePart(f"Figure {number}", text, ORBIT, *show)
 
 
-def curves_section(number: str, text: str, method: str, draw: Callable[..., Figure]) -> Section:
-    show: Any = draw, lambda data: [data.figure(number)], (f"figure{number}",)
-    return Section(f"Figure {number}", text, method, *show)
+def curves_part(number: str, text: str, method: str, draw: Callable[..., Figure]) -> PicturePart:
+    show: Any = draw, lambda data: [data.figure_curves(number)], (f"figure{number}",)
+    return PicturePart(f"Figure {number}", text, method, *show)
 
 
-def draw_basin(data: Any) -> Figure:
+def draw_basin_in_paper_symbols(data: Any) -> Figure:
     return planes.draw_basin(data, "", (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)"))
 
 
 PARTS = {
-    "5": curves_section(
+    "5": curves_part(
         "5",
         "Phase curves for eta = 0.4, e = 0.7, D = 0.005: (a) motion of both masses, (b) relative "
         "motion.",
@@ -69,8 +69,8 @@ PARTS = {
         "FMU and both sides of each impact.",
         planes.draw_phase_curves_by_state,
     ),
-    "6": orbit_diagram_section("6", ORBITS["6"]),
-    "7": curves_section(
+    "6": orbit_diagram_part("6", ORBITS["6"]),
+    "7": curves_part(
         "7",
         "Multiplicity of periodic responses at the relative resonance peaks of the windows T, 2T, "
         "3T and 4T; the excitation below.",
@@ -79,21 +79,21 @@ PARTS = {
         "window continues beyond eta = 8.0: the sweep is continued upwards to 9.0.",
         histories.draw_paper_histories,
     ),
-    "8": curves_section(
+    "8": curves_part(
         "8",
         "Typical phase curves in the first irregular region 0.43 < eta < 1.37; T, nT: periodic.",
         CURVES,
         planes.draw_relative_phase_curves,
     ),
-    "9": curves_section(
+    "9": curves_part(
         "9",
         "Typical phase curves in the second irregular region 2.61 < eta < 3.77; T, nT: periodic.",
         CURVES,
         planes.draw_relative_phase_curves,
     ),
-    "10": orbit_diagram_section("10", ORBITS["10"]),
-    "11": orbit_diagram_section("11", ORBITS["11"]),
-    "12": curves_section(
+    "10": orbit_diagram_part("10", ORBITS["10"]),
+    "11": orbit_diagram_part("11", ORBITS["11"]),
+    "12": curves_part(
         "12",
         "Phase curves of both masses at the main resonance peak: (a) close to elastic impact, low "
         "internal damping; (b) close to elastic impact, significant internal damping; (c) close to "
@@ -102,7 +102,7 @@ PARTS = {
         "more period.",
         planes.draw_phase_curves_of_masses,
     ),
-    "lyapunov": Section(
+    "lyapunov": PicturePart(
         "Largest Lyapunov exponent",
         "Largest Lyapunov exponent per unit of tau along the up-sweeps (e, D) = (0.7, 0.005), "
         "(0.7, 0.05), (0.3, 0.005), bars of one standard error. Red: chaotic; blue: neutral, "
@@ -113,10 +113,10 @@ PARTS = {
         "against -D without impacts. The standard error is that of batches; the largest of "
         "many is biased by its error: those in the table come from long runs of their own.",
         lines.draw_lyapunov,
-        lambda data: [data.exponent(case) for case in CASES],
+        lambda data: [data.lyapunov_exponents(case) for case in CASES],
         tuple(f"exponent_{structure.label()}" for structure in CASES.values()),
     ),
-    "attractors": Section(
+    "attractors": PicturePart(
         "Coexisting attractors",
         "Random starts, e = 0.7, D = 0.005. Above: largest xi_Rel of each attractor, in the colour "
         "of its multiplicity and impacts; grey lines connect what is one attractor. Middle: share "
@@ -133,7 +133,7 @@ PARTS = {
         lambda data: [data.attractors()],
         ("attractors",),
     ),
-    "basin": Section(
+    "basin": PicturePart(
         "Basins of attraction",
         "Which attractor a start leads to: gap and gap velocity at phase 0, the means of both "
         "masses those of the two attractors; e = 0.7, D = 0.005. The frequency is the one of "
@@ -141,11 +141,11 @@ PARTS = {
         "attractors.",
         "Each point is a start of the FMU, followed until settled and decided as the random starts "
         "are.",
-        draw_basin,
+        draw_basin_in_paper_symbols,
         lambda data: [data.basin()],
         ("basin",),
     ),
-    "maps": Section(
+    "maps": PicturePart(
         "Parameter maps",
         "Impacts per period, multiplicity, largest xi_Rel and largest impulse (over m_1 omega a "
         "eta^2) over frequency and restitution, damping, and detuning kappa = k_2/k_1; the other "
@@ -156,7 +156,7 @@ PARTS = {
         lambda data: [data.map(parameter) for parameter in MAPS],
         tuple(f"map_{parameter}" for parameter in MAPS),
     ),
-    "spectra": Section(
+    "spectra": PicturePart(
         "Spectra (the paper's Figure 3)",
         "Amplitude spectra of the absolute acceleration of mass 1, bonded (left) and delaminated "
         "(right), at the resonance peak and at two other frequencies; e = 0.7, D = 0.005. Orange: "
@@ -171,5 +171,5 @@ PARTS = {
 }
 
 
-def picture_name(part: str) -> str:
+def picture_file_stem(part: str) -> str:
     return f"figure{part}" if part.isdigit() else part

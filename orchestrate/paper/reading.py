@@ -34,14 +34,15 @@ def edges_of_run(data: xr.Dataset, run: tuple[int, int] | None) -> tuple[Edges, 
     return lower, (float(etas[last]), float(etas[min(last + 1, len(etas) - 1)]))
 
 
-def edges_around(data: xr.Dataset, flags: np.ndarray, inside: float) -> tuple[Edges, Edges]:
+def edges_of_run_around(data: xr.Dataset, flags: np.ndarray, eta: float) -> tuple[Edges, Edges]:
     """Return lower and upper edge of the run of true flags around a frequency."""
-    index = int(np.abs(data.eta.values - inside).argmin())
+    index = int(np.abs(data.eta.values - eta).argmin())
     there = (run for run in runs_of_true(flags) if run[0] <= index <= run[1])
     return edges_of_run(data, next(there, None))
 
 
-def longest_edges(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
+def edges_of_longest_run(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
+    """Return lower and upper edge of the longest run of true flags."""
     longest = max(runs_of_true(flags), key=lambda run: run[1] - run[0], default=None)
     return edges_of_run(data, longest)
 
@@ -55,7 +56,7 @@ def impacts_in_response(data: xr.Dataset) -> np.ndarray:
     return np.where(whole, np.round(count), 0).astype(int)
 
 
-def is_orbit(data: xr.Dataset, orbit: str) -> np.ndarray:
+def is_on_orbit(data: xr.Dataset, orbit: str) -> np.ndarray:
     """Return a Boolean array: responses on the orbit mT/k, k impacts in m periods."""
     n, impacts = orbit.split("T/")
     return (data.multiplicity.values == int(n or 1)) & (impacts_in_response(data) == int(impacts))
@@ -68,7 +69,7 @@ class ImpactRun(NamedTuple):
     low: float
     high: float
 
-    def text(self) -> str:
+    def format(self) -> str:
         return f"{self.impacts} ({self.low:.3f} to {self.high:.3f})"
 
 
@@ -82,13 +83,13 @@ def impact_runs(data: xr.Dataset) -> list[ImpactRun]:
     return [ImpactRun(count, float(low), float(high)) for count, low, high in listed if count > 0]
 
 
-def impacts_in_turn(data: xr.Dataset) -> list[int]:
+def successive_impact_numbers(data: xr.Dataset) -> list[int]:
     """Return the numbers of impacts of T-periodic responses, each change of the number once."""
     numbers = [run.impacts for run in impact_runs(data)]
     return [a for a, b in zip(numbers, [0, *numbers], strict=False) if a != b]
 
 
-def decreases(numbers: list[int]) -> bool:
+def strictly_decreases(numbers: list[int]) -> bool:
     """Return whether each number is less than the one before; there must be two."""
     return len(numbers) > 1 and all(a > b for a, b in zip(numbers, numbers[1:], strict=False))
 
@@ -96,10 +97,10 @@ def decreases(numbers: list[int]) -> bool:
 def window_edges(sweep: xr.Dataset) -> list[tuple[Edges, Edges]]:
     """Return the edges of the longest window nT with one impact, for n = 1 to 4."""
     orbits = [f"{n if n > 1 else ''}T/1" for n in range(1, 5)]
-    return [longest_edges(sweep, is_orbit(sweep, orbit)) for orbit in orbits]
+    return [edges_of_longest_run(sweep, is_on_orbit(sweep, orbit)) for orbit in orbits]
 
 
-def separated(sweep: xr.Dataset) -> list[bool]:
+def are_windows_separated(sweep: xr.Dataset) -> list[bool]:
     """Return of each two successive windows nT whether irregular responses lie between them."""
     edges = window_edges(sweep)
     gaps = [(a[1][1], b[0][0]) for a, b in zip(edges, edges[1:], strict=False)]
@@ -109,7 +110,7 @@ def separated(sweep: xr.Dataset) -> list[bool]:
     ]
 
 
-def relative_peak(sweep: xr.Dataset, n: int) -> float | None:
+def relative_peak_eta(sweep: xr.Dataset, n: int) -> float | None:
     """Return the eta of the gap's largest local maximum in the window nT; None without one."""
     (_, low), (high, _) = window_edges(sweep)[n - 1]
     if not low <= high:
@@ -133,13 +134,13 @@ class Region(NamedTuple):
         return " to " not in self.name
 
 
-def list_regions(window: Callable[[str, float], StableWindow]) -> list[Region]:
+def list_regions(window_at: Callable[[str, float], StableWindow]) -> list[Region]:
     """Return windows and the regions between them, up to eta = 8, by the windows' exact limits."""
     (contact, eta), *others = WINDOWS.items()
-    last, label = window(contact, eta).high, "contact"
+    last, label = window_at(contact, eta).high, "contact"
     regions = []
-    for orbit, inside in others:
-        limits = window(orbit, inside)
+    for orbit, eta in others:
+        limits = window_at(orbit, eta)
         regions.append(Region(last, limits.low, f"{label} to {orbit}"))
         regions.append(Region(limits.low, min(limits.high, LAST), orbit))
         last, label = limits.high, orbit

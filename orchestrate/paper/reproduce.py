@@ -12,11 +12,11 @@ from ..errors import InputError
 from ..files import make_writable_folder, write_atomically
 from ..fmu import OSCILLATOR, make_fmu_finder
 from ..show.figure_files import save
-from .claims import read_table
+from .claims import read_claims
 from .datasets import Datasets
 from .measures import check_claims
-from .measures.influence import region_rows
-from .pictures import PARTS, picture_name
+from .measures.influence import region_table_rows
+from .pictures import PARTS, picture_file_stem
 from .report import write_report
 from .resolution import Resolution
 
@@ -28,7 +28,7 @@ class Reproduction:
     """Claims with verdicts, and regions; paths of the pictures and of the report."""
 
     # `claims` and `regions`, lists of texts by name; empty where they were not asked for
-    found: Mapping[str, Any]
+    claims_and_regions: Mapping[str, Any]
     pictures: Mapping[str, Path]  # PNG files by the names of their parts
     report: Path
 
@@ -37,27 +37,27 @@ def reproduce(
     output: Path, resolution: Resolution, figures: Sequence[str] | None, running: Mapping[str, Any]
 ) -> Reproduction:
     """Compute the paper, or some parts; take stored results; write pictures, claims and report."""
-    parts = choose_parts(figures)
+    parts = select_parts(figures)
     fmu = make_fmu_finder(running)(OSCILLATOR)
     make_writable_folder(output)
     data = Datasets(output, resolution, running)
-    found = write_claims(data) if CLAIMS in parts else {"claims": [], "regions": []}
+    checked = check_and_write_claims(data) if CLAIMS in parts else {"claims": [], "regions": []}
     shown = {name: PARTS[name].results(data) for name in parts if name != CLAIMS}
-    pictures = draw_all(shown, output)
-    return Reproduction(found, pictures, write_report(output, pictures, found, resolution, fmu))
+    pictures = draw_pictures(shown, output)
+    return Reproduction(checked, pictures, write_report(output, pictures, checked, resolution, fmu))
 
 
-def choose_parts(names: Sequence[str] | None) -> list[str]:
+def select_parts(names: Sequence[str] | None) -> list[str]:
     known = [CLAIMS, *PARTS]
-    asked = known if names is None else [name.strip() for name in names]
-    for name in asked:
+    chosen = known if names is None else [name.strip() for name in names]
+    for name in chosen:
         if name not in known:
             raise InputError(f"unknown figure {name!r}; choose from {', '.join(known)}")
-    return [name for name in known if name in asked]
+    return [name for name in known if name in chosen]
 
 
-def write_claims(data: Datasets) -> dict[str, Any]:
-    checked = {"claims": check_claims(read_table(), data), "regions": region_rows(data)}
+def check_and_write_claims(data: Datasets) -> dict[str, Any]:
+    checked = {"claims": check_claims(read_claims(), data), "regions": region_table_rows(data)}
     text = json.dumps(checked, indent=1, ensure_ascii=False) + "\n"
     write_atomically(
         data.folder / "claims.json", lambda path: path.write_text(text, encoding="utf-8")
@@ -65,9 +65,9 @@ def write_claims(data: Datasets) -> dict[str, Any]:
     return checked
 
 
-def draw_all(results: Mapping[str, Sequence[Any]], output: Path) -> dict[str, Path]:
+def draw_pictures(results: Mapping[str, Sequence[Any]], output: Path) -> dict[str, Path]:
     paths = {}
     for name, data in results.items():
         figure = PARTS[name].draw(*data)
-        paths[name] = save(figure, output / picture_name(name), ("png", "pdf"))[0]
+        paths[name] = save(figure, output / picture_file_stem(name), ("png", "pdf"))[0]
     return paths

@@ -46,7 +46,7 @@ class Resolution:
         return tuple(float(eta) for eta in np.unique(np.round(etas, 6)))
 
     @property
-    def decides(self) -> bool:
+    def has_full_transients(self) -> bool:
         """Whether transients have the paper's 500 periods, which claims need."""
         return self.transient >= 500
 

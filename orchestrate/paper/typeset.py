@@ -12,7 +12,7 @@ import re
 from docutils.utils.math.latex2mathml import tex2mathml
 from markupsafe import Markup, escape
 
-from .claims import in_words
+from .claims import replace_symbols_by_words
 
 LETTERS = ("eta", "kappa", "lambda", "omega", "gamma", "tau", "mu", "nu", "xi", "pi")
 WORDS = {  # regular expressions and what they become, the longest first
@@ -46,7 +46,7 @@ def mathml(latex: str) -> Markup:
 
 
 def typeset(text: str) -> Markup:
-    parts, end, text = [], 0, in_words(text)
+    parts, end, text = [], 0, replace_symbols_by_words(text)
     for match in FORMULA.finditer(text):
         latex = match.expand(LATEX[int(str(match.lastgroup).removeprefix("word"))])
         parts += [escape(text[end : match.start()]), mathml(latex)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from ..claims import NO, PARTLY, Claim, in_words, judge
+from ..claims import NO, PARTLY, Claim, judge, replace_symbols_by_words
 from ..datasets import Datasets
 from . import equations, influence, limits, peaks, setup, windows
 
@@ -24,12 +24,12 @@ def check_claims(claims: Iterable[Claim], data: Datasets) -> list[dict[str, str]
     """Measure and judge each claim; return a row of texts for each."""
     rows = []
     for claim in claims:
-        measured = find_measure(claim.measure)(data, claim, **claim.keywords())
-        verdict = judge(measured.parts, data.size.decides or not claim.full)
+        measured = find_measure(claim.measure)(data, claim, **claim.parse_arguments())
+        verdict = judge(measured.parts, data.size.has_full_transients or not claim.full)
         names = ("section", "text", "printed", "how", "tolerance")
         row = {
             **{name: getattr(claim, name) for name in names},
-            "found": in_words(measured.found),
+            "found": replace_symbols_by_words(measured.text),
         }
         rows.append({**row, "verdict": verdict, "why": claim.why * (verdict in (NO, PARTLY))})
     return rows

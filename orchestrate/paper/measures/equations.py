@@ -18,13 +18,15 @@ TAUS = np.linspace(0.1, 9.0, 40)
 ROUNDING = 1e-6
 
 
-def compare(what: str, printed: float, right: float, form: str) -> Measured:
+def judge_printed_form(
+    quantity: str, printed_error: float, right_error: float, right_form: str
+) -> Measured:
     """Judge a printed form by its residual and the right form's: it holds if nothing is left."""
-    text = f"{what}: {printed:.2g} as printed, {right:.2g} with {form}"
-    return Measured(text, [printed < ROUNDING] if right < ROUNDING else [])
+    text = f"{quantity}: {printed_error:.2g} as printed, {right_error:.2g} with {right_form}"
+    return Measured(text, [printed_error < ROUNDING] if right_error < ROUNDING else [])
 
 
-def residual(motion: Callable[[np.ndarray], np.ndarray]) -> float:
+def largest_residual_of_6(motion: Callable[[np.ndarray], np.ndarray]) -> float:
     """Return the largest residual of equation (6) for a motion, by finite differences."""
     step = 1e-4
     here, after, before = motion(TAUS), motion(TAUS + step), motion(TAUS - step)
@@ -33,7 +35,7 @@ def residual(motion: Callable[[np.ndarray], np.ndarray]) -> float:
     return float(np.abs(left).max())
 
 
-def solution(frequency: float, damping: float) -> Callable[[np.ndarray], np.ndarray]:
+def motion_by_10_and_11(frequency: float, damping: float) -> Callable[[np.ndarray], np.ndarray]:
     """Return a motion by (10) and (11), with this frequency and damping of its free part."""
     detuning, loss = STIFFNESS - ETA**2, 2.0 * D * ETA
     a, b = -loss / (detuning**2 + loss**2), detuning / (detuning**2 + loss**2)
@@ -49,24 +51,27 @@ def solution(frequency: float, damping: float) -> Callable[[np.ndarray], np.ndar
     return motion
 
 
-def scale(data: Datasets, claim: Claim) -> Measured:
+def compare_displacement_scales(data: Datasets, claim: Claim) -> Measured:
     """Compare x/a eta^2 and x/(a eta^2) of (3), by the steady amplitude."""
     steady = 1.0 / math.hypot(1.0 - ETA**2, 2.0 * D * ETA)  # amplitude of (6), unit forcing
     x_over_a = ETA**2 * steady  # of m x'' + d x' + k x = m a Omega^2 sin(Omega t)
     printed, right = abs(x_over_a * ETA**2 - steady), abs(x_over_a / ETA**2 - steady)
-    return compare("steady amplitude less that of (6)", printed, right, "x/(a eta^2)")
+    return judge_printed_form("steady amplitude less that of (6)", printed, right, "x/(a eta^2)")
 
 
-def free_part(data: Datasets, claim: Claim) -> Measured:
+def compare_free_motions(data: Datasets, claim: Claim) -> Measured:
     """Put (10) with kappa_i, and with nu_i of (11), into (6)."""
     nu = math.sqrt(STIFFNESS - D * D)
-    printed, right = residual(solution(STIFFNESS, D)), residual(solution(nu, D))
-    return compare("left of (6)", printed, right, "nu_i for kappa_i (and D_i for D)")
+    printed, right = (
+        largest_residual_of_6(motion_by_10_and_11(STIFFNESS, D)),
+        largest_residual_of_6(motion_by_10_and_11(nu, D)),
+    )
+    return judge_printed_form("left of (6)", printed, right, "nu_i for kappa_i (and D_i for D)")
 
 
-def negative_gap_in_flight(data: Datasets, claim: Claim) -> Measured:
+def measure_gap_in_flight(data: Datasets, claim: Claim) -> Measured:
     """Measure the gap in flight: (12) as printed allows negative ones."""
-    figure = data.figure("5")
+    figure = data.figure_curves("5")
     flying = figure.kind.values == FLIGHT
     gap = (figure.state.values[:, 1] - figure.state.values[:, 0])[flying]
     inside = gap[np.abs(gap) > 1e-6 * np.abs(gap).max()]
@@ -74,7 +79,7 @@ def negative_gap_in_flight(data: Datasets, claim: Claim) -> Measured:
     return Measured(text, [bool((inside < 0.0).any())])
 
 
-def momentum(data: Datasets, claim: Claim) -> Measured:
+def measure_momentum_gain(data: Datasets, claim: Claim) -> Measured:
     """Measure the momentum that (15) gains with the factor of its second line."""
     e, mu, v1, v2 = 0.7, 0.5, 0.8, -0.4
     part = (1.0 + e) / (1.0 + mu) * (v1 - v2)
@@ -82,14 +87,14 @@ def momentum(data: Datasets, claim: Claim) -> Measured:
         abs((v1 - mu * part) + mu * (v2 + factor * part) - (v1 + mu * v2)) for factor in (mu, 1.0)
     )
     form = "(1 + e)/(1 + mu) in the second line"
-    return compare("momentum gained at m_2/m_1 = 0.5", printed, right, form)
+    return judge_printed_form("momentum gained at m_2/m_1 = 0.5", printed, right, form)
 
 
-def chattering(data: Datasets, claim: Claim) -> Measured:
+def count_chattering_impacts(data: Datasets, claim: Claim) -> Measured:
     """Find of which e impacts come in a geometric sequence of times, down to any gamma (16)."""
-    rows = data.chattering()
+    rows = data.chattering_by_restitution()
     every = rows.e.values.tolist()
-    holding = [e for e in every if is_endless(rows.sel(e=e), e)]
+    holding = [e for e in every if has_endless_sequence(rows.sel(e=e), e)]
     failing = [e for e in every if e not in holding]
     gammas = sorted(rows.gamma.values.tolist(), reverse=True)
     away = rows.ratio_error.sel(gamma=gammas[-1], e=holding).max().item() if holding else math.nan
@@ -108,7 +113,7 @@ def chattering(data: Datasets, claim: Claim) -> Measured:
     return Measured(text, [bool(holding), not failing])
 
 
-def is_endless(rows: xr.Dataset, e: float) -> bool:
+def has_endless_sequence(rows: xr.Dataset, e: float) -> bool:
     """Return whether impacts come at times in a geometric sequence, down to each gamma."""
     rows = rows.sortby("gamma", ascending=False)
     with np.errstate(divide="ignore"):  # at e = 1 more impacts than any number
@@ -118,9 +123,9 @@ def is_endless(rows: xr.Dataset, e: float) -> bool:
     return bool(grows.all() and near and rows.sticks.values.all())
 
 
-def pulling(data: Datasets, claim: Claim) -> Measured:
+def count_pulled_impacts(data: Datasets, claim: Claim) -> Measured:
     """Count slow impacts that would stick by (17) although the contact force pulls."""
-    rows = data.slow_impacts()
+    rows = data.slow_impact_counts()
     slow, pulled, sticking = (int(rows[name].sum()) for name in ("slow", "pulled", "sticking"))
     text = (
         f"of {slow} impacts slower than gamma at {rows.sizes['motion']} frequencies and structures "
@@ -129,9 +134,9 @@ def pulling(data: Datasets, claim: Claim) -> Measured:
     return Measured(text, [pulled == 0] if slow else [])
 
 
-def next_state(data: Datasets, claim: Claim) -> Measured:
+def measure_velocity_after_contact(data: Datasets, claim: Claim) -> Measured:
     """Measure the gap velocity with which the states after contact begin (20)."""
-    figure = data.figure("5")
+    figure = data.figure_curves("5")
     kind, state = figure.kind.values, figure.state.values
     ends = np.flatnonzero((kind[:-1] == CONTACT) & (kind[1:] != CONTACT))
     if not len(ends):
@@ -148,8 +153,8 @@ def next_state(data: Datasets, claim: Claim) -> Measured:
     return Measured(text, [] if math.isnan(later) else [later < first])
 
 
-def period(data: Datasets, claim: Claim) -> Measured:
+def compare_periods(data: Datasets, claim: Claim) -> Measured:
     """Compare eta/2 pi and 2 pi/eta as periods of sin(eta tau)."""
     spans, here = (ETA / (2.0 * np.pi), 2.0 * np.pi / ETA), np.sin(ETA * TAUS)
     printed, right = (float(np.abs(np.sin(ETA * (TAUS + span)) - here).max()) for span in spans)
-    return compare("change of sin(eta tau) after T", printed, right, "2 pi/eta")
+    return judge_printed_form("change of sin(eta tau) after T", printed, right, "2 pi/eta")

@@ -6,7 +6,7 @@ import xarray as xr
 
 from ..claims import Claim, Measured
 from ..datasets import Datasets
-from ..reading import Edges, edges_around, is_orbit, longest_edges
+from ..reading import Edges, edges_of_longest_run, edges_of_run_around, is_on_orbit
 
 AGREES = {
     (True, True): "both",
@@ -16,7 +16,7 @@ AGREES = {
 }
 
 
-def limit(
+def find_limit(
     data: Datasets,
     claim: Claim,
     case: str,
@@ -31,11 +31,17 @@ def limit(
     # orbit: "contact", "T" of any impacts, or mT/k; around `inside`, or the longest run where that
     # is 0. exact: the orbit, around `near`, that decides where it is another one; "upper:" before
     # it asks for its other end
-    swept, back = (run_edges(one, orbit, inside) for one in (data.up(case), data.down(case)))
-    which, printed, slack = int(edge == "upper"), float(claim.printed), slack or claim.slack
+    swept, back = (
+        edges_of_orbit(one, orbit, inside) for one in (data.up_sweep(case), data.down_sweep(case))
+    )
+    which, printed, slack = (
+        int(edge == "upper"),
+        float(claim.printed),
+        slack or claim.rounding_tolerance,
+    )
     end, _, decides = exact.rpartition(":")
     decides = decides or ("T, contact" if orbit == "contact" else orbit)
-    window = data.window(case, decides, near or inside or 3.0)
+    window = data.window_nearest(case, decides, near or inside or 3.0)
     upper = (end or edge) == "upper"
     value, kind = (window.high, window.above) if upper else (window.low, window.below)
     parts = abs(0.5 * sum(swept[which]) - printed) <= slack, abs(value - printed) <= slack
@@ -46,33 +52,35 @@ def limit(
         f"{AGREES[parts]}; downwards {back[which][0]:.3f} to {back[which][1]:.3f}"
     )
     if orbit == "contact":
-        last = data.last_contact(case)
+        last = data.last_eta_with_contact(case)
         text += f"; for gamma from 1e-5 to 5e-2 {last.min():.3f} to {last.max():.3f}"
     return Measured(text, parts)
 
 
-def run_edges(sweep: xr.Dataset, orbit: str, inside: float) -> tuple[Edges, Edges]:
+def edges_of_orbit(sweep: xr.Dataset, orbit: str, inside: float) -> tuple[Edges, Edges]:
     """Return the edges of the run of an orbit's responses, around a frequency or the longest."""
     if orbit == "contact":
         flags = sweep.permanent_contact.values == 1
     else:
-        flags = sweep.multiplicity.values == 1 if orbit == "T" else is_orbit(sweep, orbit)
-    return edges_around(sweep, flags, inside) if inside else longest_edges(sweep, flags)
+        flags = sweep.multiplicity.values == 1 if orbit == "T" else is_on_orbit(sweep, orbit)
+    return (
+        edges_of_run_around(sweep, flags, inside) if inside else edges_of_longest_run(sweep, flags)
+    )
 
 
-def peak_height(data: Datasets, claim: Claim, case: str, digits: float) -> Measured:
+def find_peak_height(data: Datasets, claim: Claim, case: str, digits: float) -> Measured:
     """Find the largest gap of an up-sweep."""
-    largest = float(data.up(case).xi_rel_max.max())
-    return Measured(f"{largest:.{int(digits)}f}", [claim.rounds(largest)])
+    largest = float(data.up_sweep(case).xi_rel_max.max())
+    return Measured(f"{largest:.{int(digits)}f}", [claim.is_rounded_to_printed(largest)])
 
 
-def peak_frequency(data: Datasets, claim: Claim, case: str) -> Measured:
+def find_peak_frequency(data: Datasets, claim: Claim, case: str) -> Measured:
     """Find the frequency of the largest gap of an up-sweep, and the gap at the printed one."""
-    gaps = data.up(case).xi_rel_max
+    gaps = data.up_sweep(case).xi_rel_max
     place, there = float(gaps.idxmax()), gaps.sel(eta=float(claim.printed), method="nearest")
-    text, rounds = f"{place:.3f}", claim.rounds(place)
+    text, rounds = f"{place:.3f}", claim.is_rounded_to_printed(place)
     if not rounds:
-        text += f", down {float(data.down(case).xi_rel_max.idxmax()):.3f}"
+        text += f", down {float(data.down_sweep(case).xi_rel_max.idxmax()):.3f}"
         text += (
             f"; at {claim.printed} the gap is {100 * (1 - float(there / gaps.max())):.4f} % less"
         )

@@ -11,30 +11,30 @@ from ..datasets import Datasets
 SAME_ORDER = 10.0**0.5  # two numbers within such a factor are of the same order
 
 
-def peak(data: Datasets, case: str) -> float:
+def peak_eta(data: Datasets, case: str) -> float:
     """Return the eta at which a case's up-sweep has its largest gap."""
-    return float(data.up(case).xi_rel_max.idxmax())
+    return float(data.up_sweep(case).xi_rel_max.idxmax())
 
 
 def peak_impulses(data: Datasets, case: str) -> np.ndarray:
     """Return a case's largest impulse at its peak over m1 omega a eta^2, and the sum in one T."""
-    row = data.impacts(case).sel(eta=peak(data, case), method="nearest")
+    row = data.impact_statistics(case).sel(eta=peak_eta(data, case), method="nearest")
     mu = CASES[case].mu
     factor = (1.0 + CASES[case].e) * mu / (1.0 + mu)  # (15)
     return factor * np.array([float(row.closing_max), float(row.closing_sum)])
 
 
-def amplitude(data: Datasets, case: str) -> float:
+def peak_amplitude(data: Datasets, case: str) -> float:
     """Return the largest displacement of either mass on a case's panel of Figure 12."""
-    figure = data.figure("12")
+    figure = data.figure_curves("12")
     there = figure.panel_of.values == list(CASES).index(case)
     return float(np.abs(figure.state.values[there, :2]).max())
 
 
-def ratios(data: Datasets, case: str) -> tuple[float, float, str]:
+def ratios_to_elastic(data: Datasets, case: str) -> tuple[float, float, str]:
     """Return a case's impulse and amplitude over the elastic case's, with a text."""
     (own, own_sum), (first, first_sum) = (peak_impulses(data, one) for one in (case, "elastic"))
-    size = amplitude(data, case) / amplitude(data, "elastic")
+    size = peak_amplitude(data, case) / peak_amplitude(data, "elastic")
     text = (
         f"largest impulse {own:.3g} against {first:.3g}: ratio {own / first:.3f}; sum over T "
         f"{own_sum / first_sum:.3f}; amplitude {size:.3f}"
@@ -42,12 +42,12 @@ def ratios(data: Datasets, case: str) -> tuple[float, float, str]:
     return own / first, size, text
 
 
-def both_at_peak(data: Datasets, claim: Claim) -> Measured:
+def find_largest_amplitudes_and_impulses(data: Datasets, claim: Claim) -> Measured:
     """Find where amplitudes of both masses and impulses are largest."""
     text, parts = [], []
     for case in CASES:
-        up, eta = data.up(case), peak(data, case)
-        sizes = [up.xi1_max, up.xi2_max, data.impacts(case).closing_max]
+        up, eta = data.up_sweep(case), peak_eta(data, case)
+        sizes = [up.xi1_max, up.xi2_max, data.impact_statistics(case).closing_max]
         places = [float(one.idxmax()) for one in sizes]
         kept = min(float(one.sel(eta=eta, method="nearest") / one.max()) for one in sizes)
         text.append(
@@ -58,12 +58,12 @@ def both_at_peak(data: Datasets, claim: Claim) -> Measured:
     return Measured("; ".join(text), parts)
 
 
-def two_impacts_each(data: Datasets, claim: Claim) -> Measured:
+def count_impacts_at_peaks(data: Datasets, claim: Claim) -> Measured:
     """Count impacts and periods of the responses at the peaks."""
-    etas = {case: peak(data, case) for case in CASES}
-    rows = (data.impacts(case).sel(eta=etas[case], method="nearest") for case in etas)
+    etas = {case: peak_eta(data, case) for case in CASES}
+    rows = (data.impact_statistics(case).sel(eta=etas[case], method="nearest") for case in etas)
     counts = [float(row.impacts) for row in rows]
-    periods = [int(data.up(case).multiplicity.sel(eta=etas[case])) for case in etas]
+    periods = [int(data.up_sweep(case).multiplicity.sel(eta=etas[case])) for case in etas]
     listed = list(zip(counts, periods, strict=True))
     return Measured(
         ", ".join(f"{count:.0f} in T, {n if n > 1 else ''}T-periodic" for count, n in listed),
@@ -71,13 +71,13 @@ def two_impacts_each(data: Datasets, claim: Claim) -> Measured:
     )
 
 
-def damping_lowers(data: Datasets, claim: Claim) -> Measured:
+def compare_damped_with_elastic(data: Datasets, claim: Claim) -> Measured:
     """Compare impulses and amplitudes of the damped case with the elastic one's."""
-    impulse, size, text = ratios(data, "damped")
+    impulse, size, text = ratios_to_elastic(data, "damped")
     return Measured(text, [impulse < 1 / SAME_ORDER, size < 1 / SAME_ORDER])
 
 
-def restitution_minor(data: Datasets, claim: Claim) -> Measured:
+def compare_plastic_with_elastic(data: Datasets, claim: Claim) -> Measured:
     """Compare impulses of the plastic case with the elastic one's."""
-    impulse, _, text = ratios(data, "plastic")
+    impulse, _, text = ratios_to_elastic(data, "plastic")
     return Measured(text, [1 / SAME_ORDER < impulse < SAME_ORDER])

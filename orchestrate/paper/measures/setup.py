@@ -10,10 +10,10 @@ from ...weak_drive import averaged
 from ..cases import BEAM
 from ..claims import Claim, Measured
 from ..datasets import Datasets
-from ..reading import between, decreases, impacts_in_turn
+from ..reading import between, strictly_decreases, successive_impact_numbers
 
 
-def beam_mass(data: Datasets, claim: Claim) -> Measured:
+def compare_beam_masses(data: Datasets, claim: Claim) -> Measured:
     """Measure unbalance and total mass of the set ``beam``, and those of the paper's beam."""
     structure, drive = Structure.from_file(BEAM), Drive.from_file(BEAM)
     wood, volume, devices = (600.0, 680.0), 3.07 * 0.047 * 0.05, 2 * 1.9  # kg/m3, dry; m3; kg
@@ -26,7 +26,7 @@ def beam_mass(data: Datasets, claim: Claim) -> Measured:
     return Measured(text, [abs(unbalance - 25.0) < 0.5, low <= own <= high])
 
 
-def sommerfeld(data: Datasets, claim: Claim) -> Measured:
+def find_folds_of_the_drive(data: Datasets, claim: Claim) -> Measured:
     """Find the folds of voltage over speed of the set ``beam``, by averaged theory."""
     structure, drive = Structure.from_file(BEAM), Drive.from_file(BEAM)
     folds, volts = averaged.folds(structure, drive), drive.motor_constant * structure.omega
@@ -38,27 +38,27 @@ def sommerfeld(data: Datasets, claim: Claim) -> Measured:
     )
 
 
-def linear_curve(numbers: np.ndarray, speed: np.ndarray) -> np.ndarray:
-    """Return a linear oscillator's amplitude over the speed of an unbalance that shakes it."""
-    size, resonance, damping = numbers
+def linear_unbalance_amplitude(parameters: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    """Return a linear oscillator's amplitudes at speeds of an unbalance that shakes it."""
+    size, resonance, damping = parameters
     ratio = speed / resonance
     curve: np.ndarray = size * ratio**2 / np.hypot(1.0 - ratio**2, 2.0 * damping * ratio)
     return curve
 
 
 def fit_linear_curve(speed: np.ndarray, amplitude: np.ndarray) -> tuple[np.ndarray, float]:
-    """Fit a linear oscillator's curve; return its numbers and the largest relative error."""
+    """Fit a linear oscillator's curve; return its parameters and the largest relative error."""
     from scipy.optimize import least_squares
 
-    def errors(numbers: np.ndarray) -> np.ndarray:
-        return linear_curve(numbers, speed) / amplitude - 1.0
+    def relative_errors(parameters: np.ndarray) -> np.ndarray:
+        return linear_unbalance_amplitude(parameters, speed) / amplitude - 1.0
 
     begin = np.array([0.02 * amplitude.max(), speed[amplitude.argmax()], 0.01])
-    fit = least_squares(errors, begin, x_scale=np.abs(begin))
-    return fit.x, float(np.abs(errors(fit.x)).max())
+    fit = least_squares(relative_errors, begin, x_scale=np.abs(begin))
+    return fit.x, float(np.abs(relative_errors(fit.x)).max())
 
 
-def ascending_branch(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+def ascending_speeds_and_amplitudes(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Return speeds (over omega) and amplitudes (mm) of a ramp, up to the largest or a jump."""
     speed, amplitude = run.Omega.values, 1000.0 * run.amplitude.values
     jump = float(run.jumps.sel(jump="up"))
@@ -69,11 +69,11 @@ def ascending_branch(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     return speed[kept], amplitude[kept]
 
 
-def linear_amplitudes(data: Datasets, claim: Claim) -> Measured:
+def fit_linear_amplitudes(data: Datasets, claim: Claim) -> Measured:
     """Fit linear oscillators' curves to both structures' amplitudes (Figure 2(a))."""
     text, worst = [], 0.0
     for kind in ("bonded", "delaminated"):
-        speed, amplitude = ascending_branch(data.ramp(kind))
+        speed, amplitude = ascending_speeds_and_amplitudes(data.ramp(kind))
         (_, resonance, damping), worst = fit_linear_curve(speed, amplitude)
         text.append(
             f"{kind} within {100 * worst:.1f} % of that of a linear oscillator with D = "
@@ -83,20 +83,24 @@ def linear_amplitudes(data: Datasets, claim: Claim) -> Measured:
     return Measured(found, [worst <= 0.1])  # what is seen in a printed curve
 
 
-def impacts_by_steps(data: Datasets, claim: Claim) -> Measured:
+def count_impacts_up_to_the_peak(data: Datasets, claim: Claim) -> Measured:
     """Count impacts up to the peak and irregular responses after it (Figure 2(b))."""
-    up = data.up("elastic")
-    steps = impacts_in_turn(between(up, 0.43, float(up.xi_rel_max.idxmax()))) or [0]
-    after = data.window("elastic", "T/1", 1.065).high
-    irregular = (between(data.settled("elastic"), after, 1.3).multiplicity == 0).mean().item()
+    up = data.up_sweep("elastic")
+    steps = successive_impact_numbers(between(up, 0.43, float(up.xi_rel_max.idxmax()))) or [0]
+    after = data.window_nearest("elastic", "T/1", 1.065).high
+    irregular = (
+        (between(data.settled_responses("elastic"), after, 1.3).multiplicity == 0).mean().item()
+    )
     text = (
         f"the model of section 3 on the way up: {', '.join(map(str, steps))} impacts in turn, "
         f"{steps[-1]} at the peak; after it {100 * irregular:.0f} % of the responses are irregular"
     )
-    return Measured(text, [decreases(steps), steps[-1] == 2, irregular > 0.0, irregular == 1.0])
+    return Measured(
+        text, [strictly_decreases(steps), steps[-1] == 2, irregular > 0.0, irregular == 1.0]
+    )
 
 
-def spectra_change(data: Datasets, claim: Claim) -> Measured:
+def compare_spectral_lines(data: Datasets, claim: Claim) -> Measured:
     """Compare spectral lines above the excitation's, bonded and delaminated (Figure 3)."""
     shown = data.spectra().acceleration.sel(mass=1).isel(eta=0)
     above = shown.where(shown.order > 1.5, drop=True)

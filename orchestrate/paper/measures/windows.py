@@ -14,9 +14,9 @@ from ..datasets import Datasets
 NOTHING = 1e-6  # of the largest gap or velocity
 
 
-def only_equal(data: Datasets, claim: Claim) -> Measured:
+def count_impacts_of_equal_halves(data: Datasets, claim: Claim) -> Measured:
     """Count impacts of halves that are equal, alike, or not alike."""
-    rows = data.slow_impacts().isel(motion=slice(-3, None))
+    rows = data.slow_impact_counts().isel(motion=slice(-3, None))
     names = rows.mu.values, rows.kappa.values, rows.impacts.values
     listed = [(mu, kappa, int(count)) for mu, kappa, count in zip(*names, strict=True)]
     text = "; ".join(f"m_2/m_1 = {m:g}, k_2/k_1 = {k:g}: {count} impacts" for m, k, count in listed)
@@ -25,7 +25,7 @@ def only_equal(data: Datasets, claim: Claim) -> Measured:
     return Measured(text, parts)
 
 
-def detuning(data: Datasets, claim: Claim) -> Measured:
+def compute_detuning(data: Datasets, claim: Claim) -> Measured:
     """Calculate the natural frequencies of both halves (7)."""
     case = CASES["elastic"]
     second = (case.kappa / case.mu) ** 0.5
@@ -34,7 +34,7 @@ def detuning(data: Datasets, claim: Claim) -> Measured:
     return Measured(f"{second:.4f}, {apart:.1f} % apart", parts)
 
 
-def most_unfavourable(data: Datasets, claim: Claim) -> Measured:
+def compare_impulses_over_detuning(data: Datasets, claim: Claim) -> Measured:
     """Compare the largest impulse at the paper's detuning with the least of the map."""
     largest, own = data.map("kappa").impulse_max.max("eta"), CASES["elastic"].kappa
     here, least = float(largest.sel(kappa=own, method="nearest")), float(largest.min())
@@ -46,24 +46,24 @@ def most_unfavourable(data: Datasets, claim: Claim) -> Measured:
     return Measured(text, [here <= 1.1 * least])
 
 
-def three_states(data: Datasets, claim: Claim) -> Measured:
+def find_three_states(data: Datasets, claim: Claim) -> Measured:
     """Look for flights, a sequence of impacts and contact in Figure 5's response."""
-    kinds = data.figure("5").kind.values
-    row = data.impacts("elastic").sel(eta=0.4, method="nearest")
+    kinds = data.figure_curves("5").kind.values
+    row = data.impact_statistics("elastic").sel(eta=0.4, method="nearest")
     text = f"{float(row.contacts):.0f} permanent contact and {float(row.impacts):.0f} impacts per T"
     return Measured(text, [bool((kinds == state).any()) for state in (SEQUENCE, CONTACT, FLIGHT)])
 
 
-def two_loops(data: Datasets, claim: Claim) -> Measured:
+def count_loops_of_masses(data: Datasets, claim: Claim) -> Measured:
     """Count how often Figure 5(a)'s closed phase curves cross themselves."""
-    state = data.figure("5").state.values
+    state = data.figure_curves("5").state.values
     closed = bool(np.abs(state[-1] - state[0]).max() < 1e-3 * np.abs(state).max())
-    counts = [crossings(state[:, mass], state[:, 2 + mass]) for mass in (0, 1)]
+    counts = [count_self_crossings(state[:, mass], state[:, 2 + mass]) for mass in (0, 1)]
     text = f"both close after T: {closed}; they cross themselves {counts[0]} and {counts[1]} times"
     return Measured(text, [closed, *(count == 1 for count in counts)])
 
 
-def crossings(x: np.ndarray, y: np.ndarray) -> int:
+def count_self_crossings(x: np.ndarray, y: np.ndarray) -> int:
     """Return how often a closed polygon crosses itself."""
     points = x + 1j * y
     begin, piece = points[:-1], np.diff(points)
@@ -79,9 +79,9 @@ def crossings(x: np.ndarray, y: np.ndarray) -> int:
     return count
 
 
-def many_loops(data: Datasets, claim: Claim) -> Measured:
+def count_loops_of_gap(data: Datasets, claim: Claim) -> Measured:
     """Count the loops of Figure 5(b)'s relative motion, and how they begin and end."""
-    figure = data.figure("5")
+    figure = data.figure_curves("5")
     state, kinds = figure.state.values, figure.kind.values
     gap, rate = state[:, 1] - state[:, 0], state[:, 3] - state[:, 2]
     jumps = np.flatnonzero((np.diff(figure.tau.values) == 0.0) & (np.diff(rate) > 0.0))
@@ -103,16 +103,16 @@ def many_loops(data: Datasets, claim: Claim) -> Measured:
     return Measured(text, [loops > 10, at_zero, point, released == 0])
 
 
-def gamma_scale(data: Datasets, claim: Claim) -> Measured:
+def find_end_of_chattering(data: Datasets, claim: Claim) -> Measured:
     """Find where the paper's gamma ends chattering at eta = 0.4, and what other gammas change."""
-    figure = data.figure("5")
+    figure = data.figure_curves("5")
     tau, state = figure.tau.values, figure.state.values
     rate, contact = state[:, 3] - state[:, 2], figure.kind.values == CONTACT
     jumps = np.flatnonzero((np.diff(tau) == 0.0) & (np.diff(rate) > 0.0))
     slow = jumps[rate[jumps + 1] < 1e-4 * np.abs(rate).max()]
     begins = tau[contact.argmax()] if contact.any() else np.nan
     parting = tau[slow[0]] if len(slow) else np.nan
-    last = [data.last_contact(case) for case in CASES]
+    last = [data.last_eta_with_contact(case) for case in CASES]
     spread = float(np.max([one.max() - one.min() for one in last]))
     text = (
         f"by 1e-4 max xi'_Rel contact begins at tau = {parting:.4f}, in the FMU at {begins:.4f}; "
@@ -121,11 +121,11 @@ def gamma_scale(data: Datasets, claim: Claim) -> Measured:
     return Measured(text, [abs(parting - begins) < 0.01 * tau[-1], spread <= 0.001 + 1e-9])
 
 
-def enough_periods(data: Datasets, claim: Claim) -> Measured:
+def count_responses_that_change(data: Datasets, claim: Claim) -> Measured:
     """Count responses of the sweep that are others after more periods."""
-    up, end = data.up("elastic"), data.window("elastic", "T/1", 2.0).high
+    up, end = data.up_sweep("elastic"), data.window_nearest("elastic", "T/1", 2.0).high
     first, most = data.size.later, data.size.latest
-    later, latest = data.later(first), data.later(most, 100)
+    later, latest = data.continued_sweep(first), data.continued_sweep(most, 100)
     text, parts = [], []
     for low, high in ((float(up.eta.min()), end), (end, float(up.eta.max()))):
         part = reading.between(later, low, high)
@@ -161,29 +161,29 @@ def count_changes(swept: xr.Dataset, later: xr.Dataset) -> tuple[int, str]:
     return total, f" ({', '.join(named)})" if named else ""
 
 
-def no_contact_above(data: Datasets, claim: Claim) -> Measured:
+def count_contacts_above_limit(data: Datasets, claim: Claim) -> Measured:
     """Count frequencies above the limit of contact that chatter into contact."""
-    part = reading.between(data.up("elastic"), 0.43, 8.0)
+    part = reading.between(data.up_sweep("elastic"), 0.43, 8.0)
     again = part.eta.values[part.permanent_contact.values == 1]
     low, ends = (again < 2.6).sum(), f" up to {again.max():.3f}" if len(again) else ""
     text = f"{low} frequencies from 0.43 to 2.6, {len(again) - low} above{ends}"
     return Measured(text, [low == 0, not len(again)])
 
 
-def windows_in_order(data: Datasets, claim: Claim) -> Measured:
+def find_windows(data: Datasets, claim: Claim) -> Measured:
     """Find the windows nT with one impact, irregular responses between them, and exact limits."""
-    up = data.up("elastic")
+    up = data.up_sweep("elastic")
     edges, names = reading.window_edges(up), ["T/1", "2T/1", "3T/1", "4T/1"]
     text = "; ".join(f"{n}T: {a[1]:.3f} to {b[0]:.3f}" for n, (a, b) in enumerate(edges, 1))
     middles = [0.5 * (a[1] + b[0]) for a, b in edges]
-    exact = [data.window("elastic", *which) for which in zip(names, middles, strict=True)]
+    exact = [data.window_nearest("elastic", *which) for which in zip(names, middles, strict=True)]
     text += "; exact: " + "; ".join(f"{w.low:.5f} to {w.high:.5f}" for w in exact)
-    return Measured(text, reading.separated(up))
+    return Measured(text, reading.are_windows_separated(up))
 
 
-def one_impact_at_peaks(data: Datasets, claim: Claim) -> Measured:
+def count_impacts_at_relative_peaks(data: Datasets, claim: Claim) -> Measured:
     """Count the impacts of Figure 7's responses in 20 T."""
-    figure, texts, parts = data.figure("7"), [], []
+    figure, texts, parts = data.figure_curves("7"), [], []
     for index, eta in enumerate(figure.eta.values.tolist()):
         there = figure.panel_of.values == index
         jump = np.diff(figure.state.values[there, 2]) != 0.0
@@ -193,10 +193,11 @@ def one_impact_at_peaks(data: Datasets, claim: Claim) -> Measured:
     return Measured(", ".join(texts), parts)
 
 
-def share_with_one_impact(data: Datasets, claim: Claim) -> Measured:
+def measure_share_with_one_impact(data: Datasets, claim: Claim) -> Measured:
     """Measure the share of periodic responses above 1.37 that have one impact in their period."""
     settled, up = (
-        reading.between(one, 1.37, 8.0) for one in (data.settled("elastic"), data.up("elastic"))
+        reading.between(one, 1.37, 8.0)
+        for one in (data.settled_responses("elastic"), data.up_sweep("elastic"))
     )
     repeats = [part.multiplicity.values > 0 for part in (settled, up)]
     one, swept = (
@@ -210,54 +211,67 @@ def share_with_one_impact(data: Datasets, claim: Claim) -> Measured:
     return Measured(text, [one == 1.0, one > 0.5])
 
 
-def impact_distance(data: Datasets, claim: Claim) -> Measured:
+def measure_times_between_impacts(data: Datasets, claim: Claim) -> Measured:
     """Measure the times between impacts at the windows' relative peaks."""
-    up, texts, parts = data.up("elastic"), [], []
+    up, texts, parts = data.up_sweep("elastic"), [], []
     for n in range(1, 4):
-        eta = reading.relative_peak(up, n)
-        row = data.impacts("elastic").sel(eta=eta or 0.0, method="nearest")
+        eta = reading.relative_peak_eta(up, n)
+        row = data.impact_statistics("elastic").sel(eta=eta or 0.0, method="nearest")
         low, high = float(row.distance_min), float(row.distance_max)
         texts.append(f"{low:.3f} to {high:.3f} T at {eta or np.nan:.3f}")
         parts.append(eta is not None and abs(low - n) < 0.01 and abs(high - n) < 0.01)
     return Measured("; ".join(texts), parts)
 
 
-def relative_peaks(data: Datasets, claim: Claim) -> Measured:
+def find_relative_peaks(data: Datasets, claim: Claim) -> Measured:
     """Find the relative peaks of the four windows; each is near 2n times the main one."""
-    etas, main = data.figure("7").eta.values, float(data.up("elastic").xi_rel_max.idxmax())
+    etas, main = (
+        data.figure_curves("7").eta.values,
+        float(data.up_sweep("elastic").xi_rel_max.idxmax()),
+    )
     text = ", ".join(f"{n}T: {eta:.3f}" for n, eta in enumerate(etas, 1))
     parts = [abs(eta / (2 * n * main) - 1.0) < 0.03 for n, eta in enumerate(etas, 1)]
     return Measured(text, [len(etas) == 4, *parts])
 
 
-def other_regions(data: Datasets, claim: Claim) -> Measured:
+def find_further_irregular_regions(data: Datasets, claim: Claim) -> Measured:
     """Find the further irregular regions, each between two windows."""
-    up = data.up("elastic")
+    up = data.up_sweep("elastic")
     edges = reading.window_edges(up)[1:]
     text = "; ".join(
         f"{a[1][0]:.3f} to {b[0][1]:.3f}, from {n}T to {n + 1}T"
         for n, (a, b) in enumerate(zip(edges, edges[1:], strict=False), 2)
     )
-    return Measured(text, reading.separated(up)[1:])
+    return Measured(text, reading.are_windows_separated(up)[1:])
 
 
-def all_periodic(data: Datasets, claim: Claim, case: str, low: float, high: float) -> Measured:
+def measure_share_t_periodic(
+    data: Datasets, claim: Claim, case: str, low: float, high: float
+) -> Measured:
     """Measure the share of T-periodic responses between two frequencies."""
-    part = reading.between(data.up(case), low, high)
+    part = reading.between(data.up_sweep(case), low, high)
     share = float(np.mean(part.multiplicity.values == 1))
     return Measured(f"{100 * share:.1f} % of {part.sizes['eta']} frequencies", [share == 1.0])
 
 
-def alternation(data: Datasets, claim: Claim, case: str, low: float, high: float) -> Measured:
+def find_alternating_windows(
+    data: Datasets, claim: Claim, case: str, low: float, high: float
+) -> Measured:
     """Find windows nT with one impact and irregular responses between them, as in section 3."""
-    steady, part = reading.between(data.impacts(case), low, high), data.up(case)
+    steady, part = reading.between(data.impact_statistics(case), low, high), data.up_sweep(case)
     distances = np.array([steady.distance_min.values, steady.distance_max.values])
-    simple, between_them = bool((np.abs(distances - 1.0) < 0.01).all()), reading.separated(part)
+    simple, between_them = (
+        bool((np.abs(distances - 1.0) < 0.01).all()),
+        reading.are_windows_separated(part),
+    )
     ends = "; ".join(
         f"{n}T {a[1]:.3f} to {b[0]:.3f}" for n, (a, b) in enumerate(reading.window_edges(part), 1)
     )
-    begin, end = data.window(case, "T/1", 2.0).high, data.window(case, "2T/1", 4.2).low
-    chaotic, neutral = data.shares(case, begin, end)
+    begin, end = (
+        data.window_nearest(case, "T/1", 2.0).high,
+        data.window_nearest(case, "2T/1", 4.2).low,
+    )
+    chaotic, neutral = data.shares_chaotic_and_neutral(case, begin, end)
     text = (
         f"T-periodic with one impact from {low} to {high}: {simple}; windows nT with one impact: "
         f"{ends}; irregular responses between them: {all(between_them)}; from {begin:.5f} to "
@@ -266,24 +280,28 @@ def alternation(data: Datasets, claim: Claim, case: str, low: float, high: float
     return Measured(text, [simple, *between_them])
 
 
-def seven_to_two(data: Datasets, claim: Claim) -> Measured:
+def check_impacts_fall_from_seven_to_two(data: Datasets, claim: Claim) -> Measured:
     """Count impacts of the damped case from 0.48 to 0.85."""
-    part = reading.between(data.up("damped"), 0.48, 0.85)
-    steps = reading.impacts_in_turn(part) or [0]
-    runs = ", ".join(run.text() for run in reading.impact_runs(part))
+    part = reading.between(data.up_sweep("damped"), 0.48, 0.85)
+    steps = reading.successive_impact_numbers(part) or [0]
+    runs = ", ".join(run.format() for run in reading.impact_runs(part))
     text = f"{', '.join(map(str, steps))}; {runs}"
-    return Measured(text, [steps[0] == 7, steps[-1] == 2, reading.decreases(steps)])
+    return Measured(text, [steps[0] == 7, steps[-1] == 2, reading.strictly_decreases(steps)])
 
 
-def sweeps_differ(data: Datasets, claim: Claim, case: str, low: float, high: float) -> Measured:
+def count_differences_of_sweeps(
+    data: Datasets, claim: Claim, case: str, low: float, high: float
+) -> Measured:
     """Count frequencies between two at which up- and down-sweep differ in their impacts."""
-    up, down = (reading.between(one, low, high) for one in (data.up(case), data.down(case)))
+    up, down = (
+        reading.between(one, low, high) for one in (data.up_sweep(case), data.down_sweep(case))
+    )
     etas = up.eta.values[reading.impacts_in_response(up) != reading.impacts_in_response(down)]
     text = f" from {etas.min():.3f} to {etas.max():.3f}" if len(etas) else ""
     return Measured(f"up and down differ at {len(etas)} frequencies{text}", [len(etas) > 0])
 
 
-def more_damping(data: Datasets, claim: Claim) -> Measured:
+def find_damping_for_one_impact(data: Datasets, claim: Claim) -> Measured:
     """Find the damping with which all responses at 1.11 to 1.33 are T-periodic with one impact."""
     part = data.map("D").sel(eta=slice(1.11, 1.33))
     one = (part.multiplicity == 1) & (np.abs(part.impacts_per_period - 1.0) < 0.1)
@@ -295,11 +313,11 @@ def more_damping(data: Datasets, claim: Claim) -> Measured:
     return Measured(text, [len(damping) > 0])
 
 
-def only_first_eliminated(data: Datasets, claim: Claim) -> Measured:
+def measure_irregular_share_when_damped(data: Datasets, claim: Claim) -> Measured:
     """Measure what of both irregular regions is left in the damped case."""
     regions = (0.48, 1.37), (2.61, 3.77)
     first, second = (
-        float(np.mean(reading.between(data.up("damped"), *ends).multiplicity.values == 0))
+        float(np.mean(reading.between(data.up_sweep("damped"), *ends).multiplicity.values == 0))
         for ends in regions
     )
     text = "; ".join(
@@ -309,22 +327,26 @@ def only_first_eliminated(data: Datasets, claim: Claim) -> Measured:
     return Measured(text, [first == 0.0, second > 0.2])
 
 
-def more_contact(data: Datasets, claim: Claim) -> Measured:
+def compare_contact_ranges(data: Datasets, claim: Claim) -> Measured:
     """Compare the ranges of permanent contact for e = 0.7 and 0.3."""
     ends = [
-        reading.edges_around(up := data.up(case), up.permanent_contact.values == 1, 0.40)[1][0]
+        reading.edges_of_run_around(
+            up := data.up_sweep(case), up.permanent_contact.values == 1, 0.40
+        )[1][0]
         for case in ("elastic", "plastic")
     ]
     text = f"up to {ends[0]:.3f} at e = 0.7, to {ends[1]:.3f} at e = 0.3"
     return Measured(text, [ends[1] > ends[0]])
 
 
-def only_lower(data: Datasets, claim: Claim) -> Measured:
+def compare_windows_over_restitution(data: Datasets, claim: Claim) -> Measured:
     """Measure how far the windows' exact limits move between e = 0.7 and 0.3."""
     low = {"T, contact": 0.4, "T/2": 1.05}
     texts, moved = [], {}
     for orbit, inside in {**low, "T/1": 2.0, "2T/1": 4.2, "3T/1": 6.3, "4T/1": 8.0}.items():
-        one, two = (data.window(case, orbit, inside).high for case in ("elastic", "plastic"))
+        one, two = (
+            data.window_nearest(case, orbit, inside).high for case in ("elastic", "plastic")
+        )
         moved[orbit] = abs(two / one - 1.0)
         texts.append(f"end of {orbit}: {one:.4f}, {two:.4f}")
     lower = np.max([moved[orbit] for orbit in low])

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from orchestrate.dynamics.stable_windows import StableWindow
-from orchestrate.paper.claims import judge, read_table
+from orchestrate.paper.claims import judge, read_claims
 from orchestrate.paper.datasets import Datasets
 from orchestrate.paper.measures import find_measure
 from orchestrate.paper.resolution import FULL
@@ -26,10 +26,10 @@ def known(windows=None, **answers):
     """Datasets whose methods answer as told, whatever their arguments, and never compute."""
     data = Datasets(Path("nowhere"), FULL, {})
     limits = {**WINDOWS, **(windows or {})}
-    data.windows = lambda case, orbit: [
+    data.windows_of_branch = lambda case, orbit: [
         StableWindow(*limits.get(orbit, (1.0, 1.3)), "fold", "fold")
     ]
-    data.get = lambda name, *_, **__: pytest.fail(f"{name}: would be computed")
+    data.get_or_compute = lambda name, *_, **__: pytest.fail(f"{name}: would be computed")
     for name, answer in answers.items():
         setattr(data, name, answer if callable(answer) else lambda *_, answer=answer: answer)
     return data
@@ -37,9 +37,9 @@ def known(windows=None, **answers):
 
 def measured(row, data):
     """What the measure of a claim says: by its number in the table, or by its function's name."""
-    table = read_table()
+    table = read_claims()
     claim = table[row] if isinstance(row, int) else next(c for c in table if c.measure == row)
-    return find_measure(claim.measure)(data, claim, **claim.keywords())
+    return find_measure(claim.measure)(data, claim, **claim.parse_arguments())
 
 
 def verdict(row, data):

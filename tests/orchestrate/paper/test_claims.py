@@ -14,7 +14,7 @@ from orchestrate.paper.claims import (
     YES,
     Claim,
     judge,
-    read_table,
+    read_claims,
 )
 from orchestrate.paper.curves import CONTACT, FLIGHT
 from orchestrate.paper.measures import find_measure, limits
@@ -32,15 +32,15 @@ ETAS = np.round(np.arange(0.1, 8.0, 0.01), 6)
 
 
 def test_claims_are_of_all_sections_with_the_numbers_that_the_paper_prints():
-    table = read_table()
+    table = read_claims()
     assert {claim.section for claim in table} == {"1", "2", "3", "3.1", "3.2", "4.1", "4.2", "5"}
     printed = " ".join(claim.printed for claim in table).split()
     assert [number for number in PRINTED.split() if number not in printed] == []
 
 
-@pytest.mark.parametrize("claim", read_table(), ids=lambda claim: claim.measure)
+@pytest.mark.parametrize("claim", read_claims(), ids=lambda claim: claim.measure)
 def test_each_row_has_a_measure_that_takes_its_arguments(claim):
-    inspect.signature(find_measure(claim.measure)).bind(None, claim, **claim.keywords())
+    inspect.signature(find_measure(claim.measure)).bind(None, claim, **claim.parse_arguments())
     assert all((claim.text, claim.printed, claim.how, claim.tolerance))
 
 
@@ -67,9 +67,11 @@ def test_a_limit_is_read_twice(edges, exact, printed, expected, agrees):
     low, high = edges
     etas = np.array([low - 0.001, low, high, high + 0.001])
     data = known({"T/2": (0.5, exact)}, sweep=responses(etas, [1, 1, 0, 0], 2))
-    claim = next(c for c in read_table() if c.measure == "limit" and "edge=upper" in c.arguments)
+    claim = next(
+        c for c in read_claims() if c.measure == "find_limit" and "edge=upper" in c.arguments
+    )
     claim = Claim(**{**vars(claim), "printed": printed})
-    found, parts = limits.limit(data, claim, "elastic", "T/2", "upper", low)
+    found, parts = limits.find_limit(data, claim, "elastic", "T/2", "upper", low)
     assert judge(parts) == expected and agrees in found
     assert f"exact: {exact:.8f} (fold of T/2)" in found
 
@@ -111,28 +113,35 @@ def one_kind(n, impacts):
     curves = loops(3).isel(point=slice(0, -2))
     of = {"panel_of": ("point", np.arange(curves.sizes["point"]) % 3), "eta": ("panel", [1.0, 2.0])}
     same.xi_rel[:] = np.linspace(1.0, 2.0, 201)
-    answers = dict.fromkeys(("sweep", "settled", "exponent", "largest"), same)
-    answers["impacts"] = lambda case: same.assign(
+    answers = dict.fromkeys(
+        ("sweep", "settled_responses", "lyapunov_exponents", "largest_exponents"), same
+    )
+    answers["impact_statistics"] = lambda case: same.assign(
         {
             name: same[name] / (1.0 + 9.0 * (case == "plastic"))
             for name in ("closing_max", "closing_sum")
         }
     )
-    answers["later"] = responses(ETAS, 1 - n, impacts)
+    answers["continued_sweep"] = responses(ETAS, 1 - n, impacts)
     alone = along_eta(ETAS, number=np.ones(len(ETAS)))
     answers["attractors"] = alone.assign(multiplicity=alone.number.expand_dims("attractor", 1))
     moved = dict.fromkeys(("T/2", "T/1", "2T/1", "3T/1", "4T/1"), (0.2, 0.3))
-    return known(moved, last_contact=np.array([0.4, np.nan]), figure=curves.assign(of), **answers)
+    return known(
+        moved,
+        last_eta_with_contact=np.array([0.4, np.nan]),
+        figure_curves=curves.assign(of),
+        **answers,
+    )
 
 
 OF_SWEEPS = [
     number
-    for number, claim in enumerate(read_table())
+    for number, claim in enumerate(read_claims())
     if "sweep" in claim.how or "settled" in claim.how or "branch" in claim.how
 ]
 
 
-@pytest.mark.parametrize("row", OF_SWEEPS, ids=lambda row: read_table()[row].measure)
+@pytest.mark.parametrize("row", OF_SWEEPS, ids=lambda row: read_claims()[row].measure)
 def test_not_everything_is_borne_out_where_all_responses_are_of_one_kind(row):
     """Nothing is as in the paper there: of each claim on sweeps one of two worlds differs."""
     assert {verdict(row, world) for world in (one_kind(1, 5), one_kind(0, 3))} != {YES}
@@ -141,6 +150,14 @@ def test_not_everything_is_borne_out_where_all_responses_are_of_one_kind(row):
 # -- section 2 -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["scale", "free_part", "momentum", "period"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "compare_displacement_scales",
+        "compare_free_motions",
+        "measure_momentum_gain",
+        "compare_periods",
+    ],
+)
 def test_an_equation_holds_as_corrected_only(name):
     assert verdict(name, known()) == NO  # undecided where the corrected form does not hold either

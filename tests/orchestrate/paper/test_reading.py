@@ -5,15 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from orchestrate.paper.measures.windows import count_changes, crossings
+from orchestrate.paper.measures.windows import count_changes, count_self_crossings
 from orchestrate.paper.reading import (
-    edges_around,
+    are_windows_separated,
+    edges_of_run_around,
     impacts_in_response,
-    is_orbit,
+    is_on_orbit,
     list_regions,
-    relative_peak,
+    relative_peak_eta,
     runs_of_true,
-    separated,
     window_edges,
 )
 
@@ -35,22 +35,26 @@ def test_windows_and_their_peaks():
     n, impacts = [2, 2, 2, 2, 2, 1, 0, 3, 3], [1, 1, 1, 1, 2, 1, 1, 1, 1]
     sweep = sweep_of(n, impacts, [9.0, 1.0, 3.0, 2.0, 8.0, 7.0, 9.0, 1.0, 2.0])
     assert window_edges(sweep)[1] == ((1.0, 1.0), (4.0, 5.0))
-    assert relative_peak(sweep, 2) == 3.0  # not the higher end
-    assert relative_peak(sweep, 1) is None and relative_peak(sweep, 4) is None
-    assert separated(sweep_of([1, 0, 2, 3], [1] * 4)) == [True, False, False]
-    assert separated(sweep_of([2, 0, 1, 0, 3], [1] * 5)) == [False, True, False]  # out of order
+    assert relative_peak_eta(sweep, 2) == 3.0  # not the higher end
+    assert relative_peak_eta(sweep, 1) is None and relative_peak_eta(sweep, 4) is None
+    assert are_windows_separated(sweep_of([1, 0, 2, 3], [1] * 4)) == [True, False, False]
+    assert are_windows_separated(sweep_of([2, 0, 1, 0, 3], [1] * 5)) == [
+        False,
+        True,
+        False,
+    ]  # out of order
 
 
 def test_edges():
     sweep = sweep_of([1, 1, 2, 2, 0], [1, 1, 3, 3, 3])
     assert impacts_in_response(sweep).tolist() == [1, 1, 3, 3, 0]
-    assert edges_around(sweep, is_orbit(sweep, "T/1"), 1.0)[1] == (2.0, 3.0)
-    assert edges_around(sweep, is_orbit(sweep, "2T/3"), 4.0)[0] == (2.0, 3.0)
-    assert all(map(math.isnan, edges_around(sweep, is_orbit(sweep, "T/1"), 4.0)[1]))
+    assert edges_of_run_around(sweep, is_on_orbit(sweep, "T/1"), 1.0)[1] == (2.0, 3.0)
+    assert edges_of_run_around(sweep, is_on_orbit(sweep, "2T/3"), 4.0)[0] == (2.0, 3.0)
+    assert all(map(math.isnan, edges_of_run_around(sweep, is_on_orbit(sweep, "T/1"), 4.0)[1]))
 
 
 def test_regions_are_windows_and_what_lies_between():
-    window = known().window
+    window = known().window_nearest
     found = list_regions(lambda orbit, inside: window("elastic", orbit, inside))
     assert [region.is_window for region in found] == [False, True] * 5
     assert [region.name for region in found][-2:] == ["3T/1 to 4T/1", "4T/1"]
@@ -70,4 +74,4 @@ def test_what_becomes_of_responses_later():
 @pytest.mark.parametrize(("turns", "expected"), [(1, 0), (2, 1), (3, 2)])
 def test_crossings_of_closed_curves(turns, expected):
     angle = np.linspace(0.1, 0.1 + 2.0 * np.pi, 300)
-    assert crossings(np.sin(angle), np.cos(turns * angle + 0.3)) == expected
+    assert count_self_crossings(np.sin(angle), np.cos(turns * angle + 0.3)) == expected
