@@ -26,8 +26,8 @@ from .references import (
     MOTOR_SHAKER,
     REFERENCES,
     Reference,
-    reference_rows,
-    rows_of_run,
+    compute_reference_rows,
+    run_and_record,
     write_reference,
 )
 
@@ -35,7 +35,7 @@ TABLES = Path(__file__).resolve().parents[1] / "docs" / "variables.md"
 SERIES = re.compile(r"\[(?!1\])\d+\]$")  # of a series, the first stands for all
 
 
-def variable_table(path: str | PathLike[str]) -> str:
+def variable_tables_as_markdown(path: str | PathLike[str]) -> str:
     """Return an FMU's variables as Markdown tables by causality, from its model description."""
     variables = [v for v in describe(path).variables.values() if not SERIES.search(v.name)]
     lines = []
@@ -54,7 +54,7 @@ def variable_table(path: str | PathLike[str]) -> str:
     return "\n".join(lines[:-1]) + "\n"
 
 
-def replace_table(page: str, reference: Reference, table: str) -> str:
+def replace_variable_table(page: str, reference: Reference, table: str) -> str:
     source, end = f"fmu_src/models/{reference.folder}/variables.py", "<!-- end of variables -->"
     begin = f"<!-- variables: generated from {source}, kept so by a test -->"
     head, rest = page.split(begin + "\n")
@@ -62,51 +62,53 @@ def replace_table(page: str, reference: Reference, table: str) -> str:
     return f"{head}{begin}\n{table}{end}{tail}"
 
 
-def simulate_example(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def simulate_oscillator_example(
+    fmu: str | PathLike[str],
+) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     names, eta = ("x1", "x2", "x_rel", "in_contact"), 0.4
     period = 2.0 * math.pi / eta
     times = [0.0, *(500 * period + np.linspace(0.0, 2 * period, 600))]
     box = {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
-    return columns_of(rows_of_run(fmu, times, names, lambda _: {}, **box), names)
+    return times_and_columns(run_and_record(fmu, times, names, lambda _: {}, **box), names)
 
 
-def simulate_limits(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def simulate_shaker_limits(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     names = ("voltage", "current", "box_position", "limited")
     coil = {"coil_inductance": 0.02, "voltage_limit": 5.0, "current_limit": 1.0}
     times = np.linspace(0.0, 1.5, 801).tolist()
-    return columns_of(rows_of_run(fmu, times, names, growing_sine, **coil), names)
+    return times_and_columns(run_and_record(fmu, times, names, growing_sine_command, **coil), names)
 
 
-def columns_of(
+def times_and_columns(
     rows: Sequence[Sequence[float]], names: Sequence[str]
 ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     times, *values = np.array(rows, dtype=float)[1:].T
     return times, dict(zip(names, values, strict=True))
 
 
-def growing_sine(time: float, frequency: float = 40.0) -> dict[str, float]:
+def growing_sine_command(time: float, frequency: float = 40.0) -> dict[str, float]:
     """Return command and derivatives of ``12 t sin(frequency t)``, V."""
     turn, wave = 12.0 * np.exp(1j * frequency * time), 1j * frequency
     values = [((time * wave**n + n * wave ** max(n - 1, 0)) * turn).imag for n in range(4)]
     return dict(zip(("command", "command_1", "command_2", "command_3"), values, strict=True))
 
 
-def draw_documentation(
+def draw_and_save_documentation(
     reference: Reference, fmu: str | PathLike[str], rows: Sequence[Sequence[float]]
 ) -> None:
     """Draw a model's scheme, icon and example run into its documentation folder."""
     folder = MODELS / reference.folder
     tight: Any = {"dpi": 100, "bbox_inches": "tight"}
     if reference is MOTOR_SHAKER:
-        scheme, image = shaker.draw_shaker(), icon.draw_motor()
+        scheme, image = shaker.draw_shaker(), icon.draw_motor_icon()
         values = dict(zip(("time", *reference.outputs), np.array(rows).T, strict=True))
         plot = shaker.draw_run_up(values["time"], values["speed"], values["box_position"])
     elif reference is COIL:
-        scheme, image = electrodynamic_shaker.draw_shaker(), icon.draw_coil()
-        plot = electrodynamic_shaker.draw_run(*simulate_limits(fmu))
+        scheme, image = electrodynamic_shaker.draw_shaker(), icon.draw_coil_icon()
+        plot = electrodynamic_shaker.draw_limited_run(*simulate_shaker_limits(fmu))
     else:
-        scheme, image = oscillator.draw_scheme(), icon.draw_masses()
-        plot = oscillator.draw_example(*simulate_example(fmu))
+        scheme, image = oscillator.draw_scheme(), icon.draw_oscillator_icon()
+        plot = oscillator.draw_example(*simulate_oscillator_example(fmu))
     figure_files.save(scheme, folder / "documentation" / "scheme", **tight)
     figure_files.save(image, folder / "model", dpi=96)
     figure_files.save(plot, folder / "documentation" / "plot", ("svg",))
@@ -117,12 +119,12 @@ def main() -> None:
     names = "fmi3", "fmi2-python"
     forms = [[find_or_export(each.model, name).path for name in names] for each in REFERENCES]
     for reference, (fmu, with_tabulated_fields) in zip(REFERENCES, forms, strict=True):
-        rows = reference_rows(reference, fmu)
+        rows = compute_reference_rows(reference, fmu)
         write_reference(reference, rows)
-        draw_documentation(reference, fmu, rows)
-        table = variable_table(with_tabulated_fields)
+        draw_and_save_documentation(reference, fmu, rows)
+        table = variable_tables_as_markdown(with_tabulated_fields)
         page = TABLES.read_text(encoding="utf-8")
-        TABLES.write_text(replace_table(page, reference, table), encoding="utf-8")
+        TABLES.write_text(replace_variable_table(page, reference, table), encoding="utf-8")
 
 
 if __name__ == "__main__":

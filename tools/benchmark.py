@@ -89,11 +89,13 @@ QUESTIONS = {  # the sizes are scaled
 }
 
 
-class Unanswered(Exception):
+class QuestionFailed(Exception):
     """A question that a checkout does not know, with the reason."""
 
 
-def time_periods(fmu: str | PathLike[str], eta: float, count: int) -> tuple[float, int]:
+def time_periods_and_count_impacts(
+    fmu: str | PathLike[str], eta: float, count: int
+) -> tuple[float, int]:
     """Return the seconds and impacts of ``count`` periods in one step, after some to settle."""
     period = 2.0 * math.pi / eta
     drive = {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
@@ -115,7 +117,7 @@ def time_quiet_step(fmu: str | PathLike[str], count: int = 100_000) -> float:
         return (time.perf_counter() - begin) / count
 
 
-def time_pure_python(fmu: str | PathLike[str], eta: float, count: int) -> float:
+def time_periods_in_pure_python(fmu: str | PathLike[str], eta: float, count: int) -> float:
     """Return the seconds of ``count`` periods in the Python kernel, in its own process."""
     environment = {**os.environ, "VIBROIMPACT_PURE_PYTHON": "1"}
     command = [sys.executable, "-m", "tools.benchmark", "--once", str(fmu), str(eta), str(count)]
@@ -168,12 +170,12 @@ def time_question(checkout: Path, question: str) -> tuple[float, float]:
     done = subprocess.run(command, cwd=checkout, capture_output=True, text=True)
     if done.returncode:
         line = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
-        raise Unanswered(f"left out: {checkout} cannot answer it ({line})")
+        raise QuestionFailed(f"left out: {checkout} cannot answer it ({line})")
     busy, elapsed = done.stdout.splitlines()[-1].split()
     return float(busy), float(elapsed)
 
 
-def compare_versions(before: Path, scale: float, rounds: int, only: str) -> None:
+def print_comparison_of_versions(before: Path, scale: float, rounds: int, only: str) -> None:
     """Print times of this version and of another checkout, measured in turn, and their ratios."""
     checkouts = Path(__file__).parents[1], before
     fmus = [path / "build" / "fmi3" / f"{OSCILLATOR}.fmu" for path in checkouts]
@@ -192,7 +194,7 @@ def compare_versions(before: Path, scale: float, rounds: int, only: str) -> None
             continue
         try:
             times = np.array([[measure(0), measure(1)] for _ in range(rounds)]).min(axis=0)
-        except Unanswered as reason:
+        except QuestionFailed as reason:
             print(f"{name:36}{reason}", flush=True)
             continue
         ratios = times[0] / times[1]
@@ -201,18 +203,20 @@ def compare_versions(before: Path, scale: float, rounds: int, only: str) -> None
         print(f"{name:36}{text}{ratios[0]:8.3f}", *(f"{r:15.3f}" for r in ratios[1:]), flush=True)
 
 
-def compare_solvers(count: int) -> None:
+def print_comparison_of_solvers(count: int) -> None:
     """Print times per period and impact over eta, and how much slower other solvers are."""
     native, python = find_or_export(OSCILLATOR).path, find_or_export(OSCILLATOR, "fmi2-python").path
     print("".join(f"{name:>12}" for name in COLUMNS), "  (the last two: times the native FMU)")
     seconds, impacts = 0.0, 0
     for eta in ETAS:
-        taken, count_of_impacts = min(time_periods(native, eta, count) for _ in range(3))
+        taken, count_of_impacts = min(
+            time_periods_and_count_impacts(native, eta, count) for _ in range(3)
+        )
         seconds, impacts = seconds + taken, impacts + count_of_impacts
         each = taken / count
         box = partial(lambda eta, time: -math.sin(eta * time), eta)  # of amplitude 1/eta^2 m
-        solver = sampled_solver.simulate_from_rest(PAPER, box, 10 * TURN / eta)[0] / 10
-        ratios = time_pure_python(python, eta, 30) / 30 / each, solver / each
+        solver = sampled_solver.time_simulation_from_rest(PAPER, box, 10 * TURN / eta)[0] / 10
+        ratios = time_periods_in_pure_python(python, eta, 30) / 30 / each, solver / each
         row = (eta, each * 1e6, taken / max(count_of_impacts, 1) * 1e9, *ratios)
         print("".join(f"{value:12.4g}" for value in row), flush=True)
     quiet = time_quiet_step(native) * 1e9
@@ -232,12 +236,12 @@ def main() -> None:
     arguments = parser.parse_args()
     if arguments.before:
         how = arguments.scale, arguments.rounds, arguments.only
-        compare_versions(arguments.before.resolve(), *how)
+        print_comparison_of_versions(arguments.before.resolve(), *how)
     elif arguments.once:
         fmu, eta, count = arguments.once
-        print(time_periods(fmu, float(eta), int(count))[0])
+        print(time_periods_and_count_impacts(fmu, float(eta), int(count))[0])
     else:
-        compare_solvers(arguments.periods)
+        print_comparison_of_solvers(arguments.periods)
 
 
 if __name__ == "__main__":

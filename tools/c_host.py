@@ -11,8 +11,8 @@ SOURCE = Path(__file__).with_suffix(".c")
 APART = {"x1_start": -1.0, "x2_start": 1e4, "box_amplitude": 1.0, "box_frequency": 0.4}
 
 
-def time_quiet_step(fmu: Path, watched: bool = False, step: float = 1e-3) -> float:
-    values = {**APART, "x_rel_max_on": float(watched)}
+def time_quiet_step(fmu: Path, with_gap_maximum: bool = False, step: float = 1e-3) -> float:
+    values = {**APART, "x_rel_max_on": float(with_gap_maximum)}
     with tempfile.TemporaryDirectory() as folder:
         program = importers.compile_against(fmu, Path(folder), [SOURCE], ("-O2",))
         library = importers.unpack_binary(fmu, "fmi3", Path(folder))

@@ -24,7 +24,7 @@ MARK = "<!-- {}: {} -->\n"
 PAGES, CLAIMS = (DOCS / "paper.md", DOCS / "claims.md"), DOCS / "claims.json"
 
 
-def count_verdicts(rows: Sequence[Mapping[str, str]]) -> list[str]:
+def verdict_count_lines(rows: Sequence[Mapping[str, str]]) -> list[str]:
     number = {verdict: sum(row["verdict"] == verdict for row in rows) for verdict in WORDS}
     return [
         f"Of {len(rows)} statements of all sections {number['yes']} are borne out, "
@@ -69,12 +69,12 @@ def region_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
     return lines[:-1]
 
 
-def fill_page(text: str, found: Mapping[str, Any]) -> str:
+def fill_page(text: str, results: Mapping[str, Any]) -> str:
     parts = {
-        "counts": lambda: count_verdicts(found["claims"]),
-        "sections": lambda: section_table(found["claims"]),
-        "verdicts": lambda: claim_table(found["claims"]),
-        "regions": lambda: region_table(found["regions"]),
+        "counts": lambda: verdict_count_lines(results["claims"]),
+        "sections": lambda: section_table(results["claims"]),
+        "verdicts": lambda: claim_table(results["claims"]),
+        "regions": lambda: region_table(results["regions"]),
     }
     for name, lines in parts.items():
         begin, end = (MARK.format(name, word) for word in ("begin", "end"))

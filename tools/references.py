@@ -77,7 +77,7 @@ COIL = Reference(
 REFERENCES = (OSCILLATOR, MOTOR_SHAKER, COIL)
 
 
-def rows_of_run(
+def run_and_record(
     fmu: str | PathLike[str],
     times: Sequence[float],
     outputs: Sequence[str],
@@ -95,11 +95,11 @@ def rows_of_run(
     return rows
 
 
-def reference_rows(reference: Reference, fmu: str | PathLike[str]) -> list[list[float]]:
+def compute_reference_rows(reference: Reference, fmu: str | PathLike[str]) -> list[list[float]]:
     def inputs(time: float) -> dict[str, float]:
         return dict(zip(reference.inputs, reference.input_at(time), strict=True))
 
-    return rows_of_run(fmu, reference.times(), reference.outputs, inputs)
+    return run_and_record(fmu, reference.times(), reference.outputs, inputs)
 
 
 def write_reference(reference: Reference, rows: Sequence[Sequence[float]]) -> None:

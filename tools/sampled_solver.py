@@ -18,7 +18,7 @@ CREEP = 1e-7  # the slowest parting
 SLOW = 1e-4  # closing speed below which contact begins; all over the scale
 
 
-def equations_of_motion(structure: Structure, acceleration: Acceleration) -> tuple[Motion, Motion]:
+def rate_functions(structure: Structure, acceleration: Acceleration) -> tuple[Motion, Motion]:
     """Return functions for the rates (3) to (6) of x1, v1, x2, v2: in flight, in contact."""
     m1, m2, k1, k2, d1, d2 = (getattr(structure, n) for n in ("m1", "m2", "k1", "k2", "d1", "d2"))
     m, k, d = m1 + m2, k1 + k2, d1 + d2
@@ -63,14 +63,14 @@ def state_after_event(
     return np.array([y[0], one, y[0] + apart, one + parting])
 
 
-def simulate_from_rest(
+def time_simulation_from_rest(
     structure: Structure,
     acceleration: Acceleration,
     end: float,
     scale: float = 1.0,
     rate: float | None = None,
 ) -> tuple[float, int]:
-    flight, contact = equations_of_motion(structure, acceleration)
+    flight, contact = rate_functions(structure, acceleration)
     gap, pressed = event_functions(structure)
     begin = time.process_time()
     t, y, touching, impacts = 0.0, np.zeros(4), True, 0

@@ -20,7 +20,13 @@ from pathlib import Path
 from urllib.parse import unquote, urldefrag, urlsplit
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
-TAKEN = {"script": "src", "link": "href", "img": "src", "iframe": "src", "source": "src"}
+RESOURCE_ATTRIBUTES = {
+    "script": "src",
+    "link": "href",
+    "img": "src",
+    "iframe": "src",
+    "source": "src",
+}
 
 
 @dataclass
@@ -29,8 +35,8 @@ class Page(HTMLParser):
 
     path: Path
     links: list[str] = field(default_factory=list)
-    taken: list[str] = field(default_factory=list)
-    places: set[str] = field(default_factory=set)
+    resources: list[str] = field(default_factory=list)
+    anchors: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         """Read the HTML file and collect its links and names."""
@@ -39,11 +45,11 @@ class Page(HTMLParser):
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         values = {name: value or "" for name, value in attrs}
-        self.places |= {values[name] for name in ("id", "name") if name in values}
+        self.anchors |= {values[name] for name in ("id", "name") if name in values}
         if tag == "a" and "href" in values:
             self.links.append(values["href"])
-        elif TAKEN.get(tag) in values and values.get("rel") != "canonical":
-            self.taken.append(values[TAKEN[tag]])
+        elif RESOURCE_ATTRIBUTES.get(tag) in values and values.get("rel") != "canonical":
+            self.resources.append(values[RESOURCE_ATTRIBUTES[tag]])
 
 
 @dataclass
@@ -57,12 +63,14 @@ class Site:
         return {path: Page(path) for path in sorted(self.folder.resolve().rglob("*.html"))}
 
     def external_resources(self) -> list[str]:
-        every = [(path, address) for path, page in self.pages.items() for address in page.taken]
+        every = [(path, address) for path, page in self.pages.items() for address in page.resources]
         begins = ("http:", "https:", "//")
         return [f"{path.name}: {one}" for path, one in every if one.lower().startswith(begins)]
 
     def broken_links(self) -> list[str]:
-        every = [(p, one) for p, page in self.pages.items() for one in (*page.links, *page.taken)]
+        every = [
+            (p, one) for p, page in self.pages.items() for one in (*page.links, *page.resources)
+        ]
         return [f"{p.name}: {one}" for p, one in every if not self.target_exists(p, one)]
 
     def target_exists(self, path: Path, address: str) -> bool:
@@ -73,7 +81,7 @@ class Site:
         if target not in self.pages:
             return target.is_file()
         is_free = not anchor or target.name == "explore.html"
-        return is_free or unquote(anchor) in self.pages[target].places
+        return is_free or unquote(anchor) in self.pages[target].anchors
 
 
 def build_site(folder: Path) -> None:

@@ -15,15 +15,15 @@ from ..running.provenance import describe_dataset
 from .sweep_data import READING
 
 
-def branch_json(found: xr.Dataset | None) -> dict[str, Any]:
-    if found is None:
+def branch_json(branch: xr.Dataset | None) -> dict[str, Any]:
+    if branch is None:
         return {"branches": [], "bifurcations": []}
-    if found.attrs.get("over") != "eta":
-        over = f" over {found.attrs['over']}" if "over" in found.attrs else ""
-        text = f"{describe_dataset(found)}{over}; expected a result of orchestrate.branch over eta"
+    if branch.attrs.get("over") != "eta":
+        over = f" over {branch.attrs['over']}" if "over" in branch.attrs else ""
+        text = f"{describe_dataset(branch)}{over}; expected a result of orchestrate.branch over eta"
         raise InputError(f"branches: {text}")
     try:
-        drawn = {"branches": branch_lines(found), "bifurcations": bifurcation_points(found)}
+        drawn = {"branches": branch_lines(branch), "bifurcations": bifurcation_points(branch)}
         json.dumps(drawn, allow_nan=False)  # as the page reads it
         return drawn
     except READING as error:
@@ -33,42 +33,40 @@ def branch_json(found: xr.Dataset | None) -> dict[str, Any]:
         ) from None
 
 
-def branch_lines(found: xr.Dataset) -> list[dict[str, Any]]:
-    stable = found.stable.values == 1
+def branch_lines(branch: xr.Dataset) -> list[dict[str, Any]]:
+    stable = branch.stable.values == 1
     return [
-        {"x": along.tolist(), "y": gaps.tolist(), "stable": bool(flag)}
-        for samples in found.xi_rel.transpose("sample", "point").values
-        for along, gaps, flag in split_by_stability(
-            found["eta"].values.astype(float), samples, stable
-        )
+        {"x": x.tolist(), "y": gaps.tolist(), "stable": bool(flag)}
+        for samples in branch.xi_rel.transpose("sample", "point").values
+        for x, gaps, flag in split_by_stability(branch["eta"].values.astype(float), samples, stable)
     ]
 
 
 def split_by_stability(
-    along: NDArray[np.float64], gaps: NDArray[np.float64], stable: NDArray[np.bool_]
+    x: NDArray[np.float64], gaps: NDArray[np.float64], stable: NDArray[np.bool_]
 ) -> list[tuple[NDArray[np.float64], NDArray[np.float64], bool]]:
     """Split a line at changes of stability; return abscissas, gaps > 0 and a flag for each part."""
     kept = gaps > 0.0
-    along, gaps, stable = along[kept], gaps[kept], stable[kept]
-    cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1).tolist(), len(along)]
+    x, gaps, stable = x[kept], gaps[kept], stable[kept]
+    cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1).tolist(), len(x)]
     return [
-        (along[a : b + 1], gaps[a : b + 1], bool(stable[a]))
+        (x[a : b + 1], gaps[a : b + 1], bool(stable[a]))
         for a, b in zip(cuts[:-1], cuts[1:], strict=True)
         if b > a
     ]
 
 
-def bifurcation_points(found: xr.Dataset) -> list[dict[str, Any]]:
-    if not found.sizes.get("bifurcation"):
+def bifurcation_points(branch: xr.Dataset) -> list[dict[str, Any]]:
+    if not branch.sizes.get("bifurcation"):
         return []
-    kinds = found.bifurcation_kind
+    kinds = branch.bifurcation_kind
     names = flag_words(kinds.attrs)
     return [
         {"eta": float(value), "gap": float(np.max(gaps)), "kind": names[int(kind)]}
         for value, kind, gaps in zip(
-            found.bifurcation_value.values,
+            branch.bifurcation_value.values,
             kinds.values,
-            found.bifurcation_xi_rel.values,
+            branch.bifurcation_xi_rel.values,
             strict=True,
         )
         if np.max(gaps) > 0.0

@@ -14,7 +14,7 @@ IMPORT = re.compile(r'^import \{([^}]*)\} from "\./([\w]+)\.js";\n', flags=re.M)
 EXPORT = re.compile(r"^export ((?:async )?(?:function\*?|class|const|let)) (\w+)", flags=re.M)
 
 
-def bundle(sources: Mapping[str, str], entry: str) -> str:
+def bundle_modules(sources: Mapping[str, str], entry: str) -> str:
     order: list[str] = []
     append_with_imports(sources, entry, order)
     return '"use strict";\n' + "".join(wrap_module(name, sources[name]) for name in order)
@@ -31,7 +31,7 @@ def append_with_imports(sources: Mapping[str, str], name: str, order: list[str])
 def wrap_module(name: str, source: str) -> str:
     exported = ", ".join(match[2] for match in EXPORT.finditer(source))
     body = IMPORT.sub(rewrite_import, source)
-    body = EXPORT.sub(r"\1 \2", remove_comments(body)).strip()
+    body = EXPORT.sub(r"\1 \2", remove_block_comments(body)).strip()
     return f"const module_{name} = (() => {{\n{body}\nreturn {{ {exported} }};\n}})();\n"
 
 
@@ -41,6 +41,6 @@ def rewrite_import(match: re.Match[str]) -> str:
     return f"const {{ {names} }} = module_{match[2]};\n"
 
 
-def remove_comments(source: str) -> str:
+def remove_block_comments(source: str) -> str:
     """Return a source without block comments that fill whole lines."""
     return re.sub(r"^[ \t]*/\*\*(?:(?!\*/).)*\*/[ \t]*\n", "", source, flags=re.M | re.S)

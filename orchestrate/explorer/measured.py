@@ -28,12 +28,12 @@ def record_json(record: xr.Dataset | None) -> dict[str, Any]:
     if record is None:
         return {"record": None}
     channels = Channels.from_record(record, (BOX, FACE))
-    orders = swept_orders(record)
+    orders = swept_sine_orders(record)
     drawn = {"orders": orders} if orders else {"lines": spectral_lines(channels)}
     return {"record": {"title": channels.title, **drawn}}
 
 
-def swept_orders(record: xr.Dataset) -> dict[str, Any] | None:
+def swept_sine_orders(record: xr.Dataset) -> dict[str, Any] | None:
     """Return the frequencies of a swept sine, Hz, and a row of amplitudes for each order; None if
     the record is of another kind.
     """

@@ -34,10 +34,10 @@ from ..weak_drive.master import CUBIC, Links, Pair, Scheme
 from ..weak_drive.run import oscillator_start_values
 from ..weak_drive.step_record import BOX, LEADING, OscillatorOutputs
 from .branches import branch_json
-from .bundle import bundle
+from .bundle import bundle_modules
 from .measured import record_json
-from .sweep_data import SweepData, check_units, first_diagram, read_sweep, shown_in
-from .tour import TOUR, tour_in
+from .sweep_data import SweepData, check_units, first_sweep, read_sweep, shown_units
+from .tour import TOUR, tour_in_units
 from .words import WORDS
 
 SOURCES = Path(__file__).parent / "page"
@@ -65,7 +65,7 @@ def explore(
     """
     asked = units if isinstance(units, Units) else Units.from_text(units)
     if data is None or isinstance(data, Structure):
-        chosen = first_diagram(data or Structure(), asked)
+        chosen = first_sweep(data or Structure(), asked)
     else:
         chosen = read_sweep(data)
         check_units(asked, chosen.level)
@@ -83,7 +83,7 @@ def explore(
         find_or_compile_web_kernel(build_folder),
         branch_json(branches) | record_json(record),
     )
-    text = render_page(chosen, shown_in(asked, chosen.level), drawn, kernel)
+    text = render_page(chosen, shown_units(asked, chosen.level), drawn, kernel)
     return write_atomically(path, lambda place: place.write_text(text, encoding="utf-8"))
 
 
@@ -98,9 +98,9 @@ def first_bytes(path: Path) -> bytes:
 def render_page(
     chosen: SweepData, shown: dict[str, str], drawn: dict[str, Any], kernel: WebKernel
 ) -> str:
-    scripts = read_modules()
+    scripts = read_javascript_modules()
     made_by = f"vibroimpact {__version__}, kernel {kernel.guid}"
-    style, script = read_source("style.css"), bundle(scripts, "main")
+    style, script = read_page_file("style.css"), bundle_modules(scripts, "main")
     return (
         template_environment()
         .get_template("page.html.j2")
@@ -108,8 +108,8 @@ def render_page(
             policy=content_security_policy(style, script),
             style=Markup(style),  # own sources, in elements whose content HTML takes as it stands
             script=Markup(script),
-            worker=Markup(bundle(scripts, "worker")),
-            tour=tour_in(shown),
+            worker=Markup(bundle_modules(scripts, "worker")),
+            tour=tour_in_units(shown),
             words=WORDS,
             branches=drawn["branches"],
             record=drawn["record"],
@@ -123,9 +123,9 @@ def render_page(
                 "loops": {**tables_for_web_page(Pair, StepAnswer), "exponent": EXPONENT},
                 "drive": drive_data(),
             },
-            data=compress(chosen.numbers.astype("<f8").tobytes()),
-            kernel=compress(kernel.module),
-            **voltage_slider(),
+            data=compress_to_base64(chosen.numbers.astype("<f8").tobytes()),
+            kernel=compress_to_base64(kernel.module),
+            **voltage_slider_values(),
         )
     )
 
@@ -175,7 +175,7 @@ def page_data(chosen: SweepData) -> dict[str, Any]:
         "low": chosen.low,
         "high": chosen.high,
         "level": chosen.level,
-        "tour": {stop.name: stop.link_text for step in TOUR for stop in step.stops},
+        "tour": {stop.name: stop.link_query for step in TOUR for stop in step.stops},
     }
 
 
@@ -211,7 +211,9 @@ def drive_data(step: float = 0.1) -> dict[str, Any]:
     }
 
 
-def voltage_slider(low: float = 0.8, high: float = 2.0, first: float = 0.9) -> dict[str, str]:
+def voltage_slider_values(
+    low: float = 0.8, high: float = 2.0, first: float = 0.9
+) -> dict[str, str]:
     unit = Drive.from_file("quick").motor_constant * Structure.from_file("quick").omega
     ends = {"voltage_low": low, "voltage_high": high, "voltage": first}
     return {name: f"{value * unit:.6g}" for name, value in ends.items()}
@@ -222,14 +224,14 @@ def structure_numbers(structure: Structure) -> dict[str, float]:
     return numbers | dict.fromkeys(PUSHES, 0.0)
 
 
-def compress(content: bytes) -> str:
+def compress_to_base64(content: bytes) -> str:
     return base64.b64encode(zlib.compress(content, 9)).decode()
 
 
 @functools.cache
-def read_source(name: str) -> str:
+def read_page_file(name: str) -> str:
     return (SOURCES / name).read_text(encoding="utf-8")
 
 
-def read_modules() -> dict[str, str]:
-    return {path.stem: read_source(path.name) for path in sorted(SOURCES.glob("*.js"))}
+def read_javascript_modules() -> dict[str, str]:
+    return {path.stem: read_page_file(path.name) for path in sorted(SOURCES.glob("*.js"))}

@@ -56,13 +56,13 @@ class SweepData:
 def empty_sweep(structure: Structure, units: Units) -> SweepData:
     """Return data without a sweep: the page then computes its first diagram itself."""
     settings = {"transient": 500, "samples": 200, "tolerance": 1e-2}
-    level = ("paper", 1.0) if in_ratios(structure, units) else ("g", 1.0)
+    level = ("paper", 1.0) if opens_in_ratios(structure, units) else ("g", 1.0)
     return SweepData(structure, ("up",), settings, np.empty(0), 0, 0.1, 8.0, level, "")
 
 
 def read_sweep(data: xr.Dataset) -> SweepData:
     try:
-        return read_checked(data, check_sweep(data))
+        return read_checked_sweep(data, checked_direction(data))
     except InputError:
         raise
     except READING as error:
@@ -71,7 +71,7 @@ def read_sweep(data: xr.Dataset) -> SweepData:
         ) from None
 
 
-def read_checked(data: xr.Dataset, direction: str) -> SweepData:
+def read_checked_sweep(data: xr.Dataset, direction: str) -> SweepData:
     structure = Structure.from_attributes({str(name): value for name, value in data.attrs.items()})
     pushes = {name: data.attrs.get(name, 0.0) for name in PUSHES}
     varied = {name: text for name, text in pushes.items() if isinstance(text, str)}
@@ -107,7 +107,7 @@ def read_checked(data: xr.Dataset, direction: str) -> SweepData:
     )
 
 
-def in_ratios(structure: Structure, units: Units) -> bool:
+def opens_in_ratios(structure: Structure, units: Units) -> bool:
     """Return whether a page opens with the paper's ratios: no other unit is asked for."""
     if units.length or units.acceleration:
         return False
@@ -123,7 +123,7 @@ def check_units(units: Units, level: tuple[str, float]) -> None:
         )
 
 
-def shown_in(units: Units, level: tuple[str, float]) -> dict[str, str]:
+def shown_units(units: Units, level: tuple[str, float]) -> dict[str, str]:
     if level[0] == "paper":  # ratios have no unit, but of time
         units = Units(time=units.time)
     return asdict(units.with_defaults(OWN))
@@ -156,7 +156,7 @@ def sweep_settings(data: xr.Dataset) -> dict[str, float]:
     return settings
 
 
-def check_sweep(data: xr.Dataset) -> str:
+def checked_direction(data: xr.Dataset) -> str:
     """Return the direction of a sweep; raise if the page cannot show the sweep."""
     needed = {"eta", "frequency", "amplitude", "impacts_per_period", "end_state"}
     missing = needed - {str(name) for name in data.variables}
@@ -197,18 +197,18 @@ STAMP = "kernel"  # attribute: digest of the kernel that computed it
 log = logging.getLogger(__name__)
 
 
-def first_diagram(structure: Structure, units: Units | None = None) -> SweepData:
+def first_sweep(structure: Structure, units: Units | None = None) -> SweepData:
     """Return the page's first diagram: Figure 6 for the paper's structure, else an empty one."""
     units = units or Units()
-    if structure != Structure() or not in_ratios(structure, units):
+    if structure != Structure() or not opens_in_ratios(structure, units):
         return empty_sweep(structure, units)
     data = load_result(FILE)
-    if not is_current(data):
+    if not is_from_current_kernel(data):
         log.warning("Figure 6 was computed by another kernel: the page computes its own")
         return empty_sweep(structure, units)
     return read_sweep(data)
 
 
-def is_current(data: xr.Dataset) -> bool:
+def is_from_current_kernel(data: xr.Dataset) -> bool:
     """Return whether the present kernel computed a stored Figure 6."""
     return bool(data.attrs.get(STAMP) == kernel_digest(OSCILLATOR))

@@ -48,13 +48,13 @@ class View:
     level: float = 0.0
 
     @property
-    def link_text(self) -> str:
+    def link_query(self) -> str:
         low, high = self.region
         start = ",".join(f"{value:g}" for value in self.start)
         level = {"g": self.level} if self.level else {}
         words = {"from": low, "to": high, "direction": self.direction, **self.changes, **level}
-        said = [f"{name}={value}" for name, value in words.items()]
-        return "&".join([*said, f"eta={self.eta}", f"start={start}"])
+        pairs = [f"{name}={value}" for name, value in words.items()]
+        return "&".join([*pairs, f"eta={self.eta}", f"start={start}"])
 
     @property
     def structure(self) -> Structure:
@@ -123,8 +123,8 @@ STEPS = (
 )
 
 
-def in_units(text: str, shown: Mapping[str, str]) -> str:
-    def convert(match: re.Match[str]) -> str:
+def convert_quantities(text: str, shown: Mapping[str, str]) -> str:
+    def format_quantity(match: re.Match[str]) -> str:
         number, unit = match.groups()
         sizes = FACTORS[KINDS[unit]]
         word = shown[KINDS[unit]]
@@ -132,18 +132,20 @@ def in_units(text: str, shown: Mapping[str, str]) -> str:
         value = format(Decimal(f"{float(number) * scale:.4g}"), "f")  # without an exponent
         return f"η = {value}" if word == "eta" else f"{value} {SPELLED.get(word, word)}"
 
-    return QUANTITY.sub(convert, text)
+    return QUANTITY.sub(format_quantity, text)
 
 
-def tour_in(shown: Mapping[str, str]) -> tuple[Step, ...]:
+def tour_in_units(shown: Mapping[str, str]) -> tuple[Step, ...]:
     return tuple(
         replace(
             step,
-            text=in_units(step.text, shown),
-            stops=tuple(replace(stop, label=in_units(stop.label, shown)) for stop in step.stops),
+            text=convert_quantities(step.text, shown),
+            stops=tuple(
+                replace(stop, label=convert_quantities(stop.label, shown)) for stop in step.stops
+            ),
         )
         for step in STEPS
     )
 
 
-TOUR = tour_in(USUAL)
+TOUR = tour_in_units(USUAL)

@@ -15,7 +15,7 @@ def test_pictures_are_drawn(exported, monkeypatch, tmp_path, reference):
     (tmp_path / reference.folder / "documentation").mkdir(parents=True)
     times = [float(time) for time in np.linspace(0.0, 1.0, 5)]
     rows = [[time, *np.full(len(reference.outputs), time)] for time in times]
-    assets.draw_documentation(reference, find_or_export(reference.model).path, rows)
+    assets.draw_and_save_documentation(reference, find_or_export(reference.model).path, rows)
     names = {path.name for path in (tmp_path / reference.folder).rglob("*.*")}
     assert names == {"scheme.png", "plot.svg", "model.png"}
 

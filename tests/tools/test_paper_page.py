@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from orchestrate.paper.claims import read_table
+from orchestrate.paper.claims import read_claims
 from tools import paper_page
 
 
@@ -19,6 +19,6 @@ def test_the_page_is_made_from_the_claims(page):
 
 def test_the_claims_beside_it_are_those_of_the_code():
     rows = json.loads(paper_page.CLAIMS.read_text("utf-8"))["claims"]
-    own = [(claim.section, claim.text, claim.printed) for claim in read_table()]
+    own = [(claim.section, claim.text, claim.printed) for claim in read_claims()]
     assert [(row["section"], row["text"], row["printed"]) for row in rows] == own
     assert all(row["verdict"] != "undecided" for row in rows)

@@ -18,9 +18,9 @@ from matplotlib.figure import Figure
 
 import orchestrate
 from orchestrate import cli
-from orchestrate.weak_drive.drive_spectra import drive_spectra as ask_drive_spectra
+from orchestrate.weak_drive.drive_spectra import drive_spectra
 from tools.pictures import beam, cards, fmu, level, theory
-from tools.pictures.small import save_small, write_small
+from tools.pictures.small import save_with_few_colours, write_png_with_few_colours
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAPER = orchestrate.Structure.nondimensional(e=0.7, D=0.005)
@@ -54,9 +54,9 @@ def draw_verdict() -> Figure:
     return beam.draw_verdicts(records)
 
 
-def draw_phase_curves_by_state() -> Figure:
+def draw_states_over_a_period() -> Figure:
     motion = orchestrate.simulate(PAPER, eta=0.4, transient=100, periods=1, points=1200)
-    return theory.draw_phase_curves_by_state(motion)
+    return theory.draw_states_over_a_period(motion)
 
 
 def draw_engineer_card() -> Figure:
@@ -69,10 +69,10 @@ def draw_engineer_card() -> Figure:
 
 def draw_researcher_card() -> Figure:
     eta = np.arange(0.9, 4.0, 0.004)
-    return cards.draw_orbits(orchestrate.sweep(PAPER, eta=eta, samples=40, progress=False))
+    return cards.draw_orbit_diagram(orchestrate.sweep(PAPER, eta=eta, samples=40, progress=False))
 
 
-def follow_branches() -> dict[str, xr.Dataset]:
+def compute_branches() -> dict[str, xr.Dataset]:
     found = {}
     for label, (eta, period, limits) in BRANCHES.items():
         start = orchestrate.orbit(PAPER, eta=eta, period=period)
@@ -82,12 +82,12 @@ def follow_branches() -> dict[str, xr.Dataset]:
 
 def draw_branches() -> Figure:
     responses = orchestrate.sweep(PAPER, eta=np.arange(100, 8001, 2) / 1000.0)
-    return orchestrate.plot(responses, *follow_branches().values())
+    return orchestrate.plot(responses, *compute_branches().values())
 
 
 def draw_borders() -> Figure:
     """Draw the bifurcation curves of T/1 to 4T/1 over eta and e; return the figure."""
-    every, limits = follow_branches(), [(0.9, 9.5), (0.05, 1.0)]
+    every, limits = compute_branches(), [(0.9, 9.5), (0.05, 1.0)]
     curves = [
         orchestrate.border(PAPER, start=every[label], bifurcation=i, limits=limits)
         for label in ("T/1", "2T/1", "3T/1", "4T/1")
@@ -96,10 +96,10 @@ def draw_borders() -> Figure:
     return orchestrate.plot(*curves)
 
 
-def draw_spectra() -> Figure:
+def draw_drive_spectra() -> Figure:
     structure = orchestrate.Structure.from_file("quick")
     drive = orchestrate.Drive.from_file("quick")
-    return orchestrate.plot(ask_drive_spectra(structure, drive, progress=False), title="quick")
+    return orchestrate.plot(drive_spectra(structure, drive, progress=False), title="quick")
 
 
 PICTURES: dict[str, Callable[[], Figure]] = {
@@ -108,16 +108,16 @@ PICTURES: dict[str, Callable[[], Figure]] = {
     "engineer": draw_engineer_card,
     "researcher": draw_researcher_card,
     "fmu": fmu.draw_block,
-    "states": draw_phase_curves_by_state,
-    "certificate": theory.draw_certificate,
-    "spectra": draw_spectra,
+    "states": draw_states_over_a_period,
+    "certificate": theory.draw_certified_root_search,
+    "spectra": draw_drive_spectra,
     "level": level.draw_controlled_sweep,
     "branches": draw_branches,
     "borders": draw_borders,
 }
 
 
-def draw_by_command(line: str, ending: str) -> bytes:
+def png_drawn_by_command(line: str, ending: str) -> bytes:
     with TemporaryDirectory() as folder:
         if cli.main([*line.split(), "--output", folder]):
             raise SystemExit(f"{line}: failed")
@@ -130,11 +130,11 @@ def main(names: list[str]) -> None:
     for name in names or [*PICTURES, *COMMANDS]:
         path = DOCS / f"{name}.png"
         if name in PICTURES:
-            save_small(PICTURES[name](), path)
+            save_with_few_colours(PICTURES[name](), path)
         elif name in COMMANDS:
-            write_small(draw_by_command(*COMMANDS[name]), path)
+            write_png_with_few_colours(png_drawn_by_command(*COMMANDS[name]), path)
         elif name in KEPT:
-            write_small(path.read_bytes(), path)
+            write_png_with_few_colours(path.read_bytes(), path)
         else:
             expected = ", ".join([*PICTURES, *COMMANDS, *KEPT])
             raise SystemExit(f"{name}: no picture of the manual; expected one of {expected}")

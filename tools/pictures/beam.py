@@ -14,7 +14,7 @@ from matplotlib.patches import Polygon, Rectangle
 from orchestrate.show.colours import BLACK, BLUE, GREY, RED
 from orchestrate.show.style import styled
 
-from .oscillator import draw_masses, hide_frame
+from .oscillator import draw_masses_in_box, hide_frame
 
 LENGTH, THICKNESS = 6.0, 0.5  # of the beam that is drawn
 SLIT = (2.2, 5.2)  # where its halves part
@@ -52,7 +52,7 @@ def draw_two_masses() -> Figure:
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     draw_beam(left, 0.55, RED)
     left.set_title("a beam, delaminated along its middle", fontsize=9)
-    draw_masses(right, 1.0, 10)
+    draw_masses_in_box(right, 1.0, 10)
     right.text(5.0, 2.25, "gap", ha="center", fontsize=9, color=RED)
     right.annotate("", (5.5, 2.0), (4.5, 2.0), arrowprops={"arrowstyle": "<->", "color": RED})
     right.annotate("", (6.4, -0.5), (3.6, -0.5), arrowprops={"arrowstyle": "<->", "lw": 1.6})

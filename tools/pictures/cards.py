@@ -36,7 +36,7 @@ def draw_resonance(curves: xr.Dataset) -> Figure:
 
 
 @styled
-def draw_orbits(diagram: xr.Dataset) -> Figure:
+def draw_orbit_diagram(diagram: xr.Dataset) -> Figure:
     figure, axes = make_card()
     eta = np.repeat(diagram.eta.values, diagram.sizes["sample"])
     dots: Any = {"color": BLACK, "markersize": 1.2, "alpha": 0.35, "markeredgewidth": 0.0}

@@ -41,7 +41,7 @@ def draw_shaker(width: float = 4.2) -> Figure:
 
 
 @styled
-def draw_run(times: np.ndarray, values: dict[str, np.ndarray]) -> Figure:
+def draw_limited_run(times: np.ndarray, values: dict[str, np.ndarray]) -> Figure:
     """Draw voltage, current and position over time, shaded where a limit acts."""
     figure, panels = make_panels(3, 1, (9, 6), sharex=True)
     rows = (("voltage", "$u$ in V", 1.0), ("current", "$i$ in A", 1.0))

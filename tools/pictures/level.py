@@ -17,7 +17,7 @@ LEVEL = 0.5 * GRAVITY
 HALVES = {"m1": 0.10, "m2": 0.08, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.007, "e": 0.6}
 
 
-def controlled_sweeps() -> dict[str, tuple[xr.Dataset, xr.Dataset]]:
+def simulate_controlled_sweeps() -> dict[str, tuple[xr.Dataset, xr.Dataset]]:
     beam = orchestrate.Structure.from_halves(**HALVES)
     shaker = orchestrate.Shaker.from_file("shaker_100N").replace(table_mass=0.4)
     sweep = orchestrate.SweptSine(first=35.0, last=60.0, duration=60.0, acceleration=LEVEL)
@@ -33,7 +33,7 @@ def controlled_sweeps() -> dict[str, tuple[xr.Dataset, xr.Dataset]]:
 def draw_controlled_sweep() -> Figure:
     """Draw the table's level, the current and the table's second and third order over frequency."""
     figure, panels = make_panels(3, 1, (7.6, 6.4), "", sharex=True)
-    for name, (_, orders) in controlled_sweeps().items():
+    for name, (_, orders) in simulate_controlled_sweeps().items():
         colour, frequency = RED if name == "delaminated" else BLACK, orders.frequency
         table = orders.amplitude.sel(channel="box_acceleration") / LEVEL
         current = orders.amplitude.sel(channel="acceleration1", order=1)

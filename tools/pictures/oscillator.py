@@ -41,22 +41,22 @@ def draw_damper(axes: Axes, x: float, y: float, length: float) -> None:
     axes.plot([middle + 0.05, x + length], [y, y], "k", lw=1.4)
 
 
-def draw_masses(axes: Axes, gap: float, size: float) -> None:
+def draw_masses_in_box(axes: Axes, gap: float, font_size: float) -> None:
     axes.add_patch(Rectangle((0, 0), 10, 4, fill=False, lw=2.0))
     left, right = 3.4 - 0.5 * gap, 5.0 + 0.5 * gap
     for side, x, begin in (("1", left, 0.0), ("2", right, right + 1.6)):
         axes.add_patch(Rectangle((x, 1.1), 1.6, 1.8, facecolor="0.85", edgecolor="k", lw=1.4))
-        axes.text(x + 0.8, 2.0, f"$m_{side}$", ha="center", va="center", fontsize=size + 1)
+        axes.text(x + 0.8, 2.0, f"$m_{side}$", ha="center", va="center", fontsize=font_size + 1)
         draw_spring(axes, begin, 2.5, left)
         draw_damper(axes, begin, 1.5, left)
-        axes.text(begin + 0.5 * left, 2.95, f"$k_{side}$", ha="center", fontsize=size)
-        axes.text(begin + 0.5 * left, 0.72, f"$d_{side}$", ha="center", fontsize=size)
+        axes.text(begin + 0.5 * left, 2.95, f"$k_{side}$", ha="center", fontsize=font_size)
+        axes.text(begin + 0.5 * left, 0.72, f"$d_{side}$", ha="center", fontsize=font_size)
 
 
 @styled
 def draw_scheme(width: float = 4.8) -> Figure:
     figure, axes = make_sketch(width)
-    draw_masses(axes, 0.0, 12)
+    draw_masses_in_box(axes, 0.0, 12)
     for x, name in ((3.5, "$x_1$"), (5.1, "$x_2$")):
         axes.annotate("", (x + 1.4, 3.35), (x, 3.35), arrowprops={"arrowstyle": "->"})
         axes.text(x + 0.7, 3.45, name, ha="center", fontsize=11)

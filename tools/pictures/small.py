@@ -14,11 +14,11 @@ from orchestrate.show.figure_files import png_bytes
 COLOURS = 128  # more are not seen in lines and letters
 
 
-def save_small(figure: Figure, path: Path) -> None:
-    write_small(png_bytes(figure), path)
+def save_with_few_colours(figure: Figure, path: Path) -> None:
+    write_png_with_few_colours(png_bytes(figure), path)
 
 
-def write_small(png: bytes, path: Path) -> None:
+def write_png_with_few_colours(png: bytes, path: Path) -> None:
     with Image.open(io.BytesIO(png)) as picture:
         few = picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
 

@@ -22,7 +22,7 @@ STEPS = 5  # towards the root that are drawn
 
 
 @styled
-def draw_phase_curves_by_state(data: xr.Dataset) -> Figure:
+def draw_states_over_a_period(data: xr.Dataset) -> Figure:
     figure, (gap, force) = make_panels(2, 1, (9.0, 4.6), sharex=True, height_ratios=(2, 1))
     turns = data.periods_done.values - float(data.periods_done[0])
     gap.plot(turns, data.x_rel, color=BLACK, linewidth=1.3)
@@ -50,7 +50,7 @@ def draw_phase_curves_by_state(data: xr.Dataset) -> Figure:
     return figure
 
 
-def wave_derivative(time: float | np.ndarray, order: int) -> Any:
+def gap_derivative(time: float | np.ndarray, order: int) -> Any:
     """Return a derivative of a given order of an example gap of two waves."""
     mean = MEAN if order == 0 else 0.0
     waves = (a * k**order * np.sin(k * time + p + order * math.pi / 2.0) for a, k, p in WAVES)
@@ -58,36 +58,36 @@ def wave_derivative(time: float | np.ndarray, order: int) -> Any:
 
 
 @styled
-def draw_certificate() -> Figure:
+def draw_certified_root_search() -> Figure:
     figure, (sampled, certified) = make_panels(1, 2, (9.6, 3.4), sharey=True)
     time = np.linspace(0.0, 3.4, 800)
     for panel in (sampled, certified):
-        panel.plot(time, wave_derivative(time, 0), color=BLACK, linewidth=1.3, label="gap")
+        panel.plot(time, gap_derivative(time, 0), color=BLACK, linewidth=1.3, label="gap")
         panel.axhline(0.0, color=GREY, linewidth=0.8)
         panel.set(xlabel="time", xticks=[], ylim=(-0.18, 1.1))
     grid = np.linspace(0.0, 3.4, 6)
-    sampled.plot(grid, wave_derivative(grid, 0), "o", color=RED, label="samples: all above 0")
+    sampled.plot(grid, gap_derivative(grid, 0), "o", color=RED, label="samples: all above 0")
     sampled.set_title("a solver that samples sees no impact")
     sampled.set_ylabel("gap")
-    draw_steps(certified)
+    draw_bounding_steps(certified)
     certified.set_title("a bound below the gap: no root before its own")
     for panel in (sampled, certified):
         panel.legend(loc="upper center")
     return figure
 
 
-def draw_steps(axes: Axes) -> None:
+def draw_bounding_steps(axes: Axes) -> None:
     now = 0.0
     for step in range(STEPS):
         largest = sum(a * k**2 for a, k, _ in WAVES)
         bound = Polynomial(
-            [float(wave_derivative(now, 0)), float(wave_derivative(now, 1)), -0.5 * largest]
+            [float(gap_derivative(now, 0)), float(gap_derivative(now, 1)), -0.5 * largest]
         )
         length = float(max(bound.roots().real))  # it falls from a value above 0: one root ahead
         along = np.linspace(0.0, length, 100)
         label = "bounds" if step == 0 else None
         axes.plot(now + along, bound(along), color=GREEN, linewidth=1.4, label=label)
-        axes.plot(now, wave_derivative(now, 0), "o", color=GREEN, markersize=4)
+        axes.plot(now, gap_derivative(now, 0), "o", color=GREEN, markersize=4)
         now += length
-    root = brentq(wave_derivative, now, DIP, args=(0,))
+    root = brentq(gap_derivative, now, DIP, args=(0,))
     axes.plot(root, 0.0, "*", color=RED, markersize=12, label="first root: the impact")

@@ -129,14 +129,14 @@ ANEW = "the kernel has changed: make Figure 6 of the explorer anew, python -m to
 
 
 def test_figure_6_comes_from_the_present_kernel():
-    assert sweep_data.is_current(load_result(sweep_data.FILE)), ANEW
+    assert sweep_data.is_from_current_kernel(load_result(sweep_data.FILE)), ANEW
 
 
 @pytest.mark.parametrize("first", [0, 1100, 2850, 7896])  # chaos at 1100 and 2850
 def test_figure_6_is_replayed_from_where_its_responses_begin(exported, first):
     given = load_result(sweep_data.FILE)
     few = given.isel(eta=slice(first, first + 5))
-    found = sweep_data.first_diagram(orchestrate.Structure())
+    found = sweep_data.first_sweep(orchestrate.Structure())
     start = found.numbers[3 * found.count :].reshape(-1, 4)[first]
     swept = orchestrate.sweep(
         orchestrate.Structure(), eta=few.eta.values, start=start, direction="up", progress=False
