@@ -73,19 +73,21 @@ class CustomBuildHook(BuildHookInterface):
                 module.is_file()
                 and webassembly.guid_inside(module.read_bytes()) == webassembly.guid()
             ),
-            lambda: write(module, webassembly.export()),
+            lambda: write(module, webassembly.compile_module()),
         )
         for source in sorted(c_library.LOOPS.glob("*.c")):
             token = c_library.guid(source)
             for platform in platforms.PLATFORMS:
-                path = build / "libraries" / c_library.file_name(source, platform)
-                if platform in platforms.usual() or path.exists():
-                    files = path, c_library.digest_file(path)
+                path = build / "libraries" / c_library.library_name(source, platform)
+                if platform in platforms.default_platforms() or path.exists():
+                    files = path, c_library.digest_path(path)
                     self.include(
                         {one: f"{PLACE}/libraries/{platform}/{one.name}" for one in files},
-                        lambda path=path, token=token: c_library.is_current(path, token),
+                        lambda path=path, token=token: c_library.is_current_and_undamaged(
+                            path, token
+                        ),
                         lambda source=source, platform=platform, path=path: write_library(
-                            path, c_library.export(source, platform)
+                            path, c_library.compile_loop(source, platform)
                         ),
                     )
 
@@ -109,7 +111,7 @@ def write_library(path: Path, library: bytes) -> None:
     from fmu_src.export import c_library
 
     write(path, library)
-    write(c_library.digest_file(path), c_library.digest(library).encode())
+    write(c_library.digest_path(path), c_library.library_digest(library).encode())
 
 
 def write(path: Path, content: bytes) -> None:

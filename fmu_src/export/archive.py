@@ -12,7 +12,7 @@ from pathlib import Path
 EPOCH = (1980, 1, 1, 0, 0, 0)
 
 
-def fingerprint(files: Mapping[str, bytes]) -> str:
+def content_hash(files: Mapping[str, bytes]) -> str:
     """Return a hash of named contents, 32 hexadecimal digits."""
     digest = hashlib.sha256()
     for name in sorted(files):
@@ -22,7 +22,7 @@ def fingerprint(files: Mapping[str, bytes]) -> str:
 
 
 def guid_of(files: Mapping[str, bytes]) -> str:
-    digest = fingerprint(files)
+    digest = content_hash(files)
     return f"{{{digest[:8]}-{digest[8:12]}-{digest[12:16]}-{digest[16:20]}-{digest[20:]}}}"
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from ..kernels import deviations, linear_response, orbits, repetition
 from ..kernels.numerics import turn
 from .archive import guid_of
-from .compiler import link
+from .compiler import compile_and_link
 from .errors import CannotExport
 from .platforms import PLATFORMS
 from .sources import ROOT, Files, import_closure
@@ -53,37 +53,39 @@ def loop_files(source: Path) -> Files:
     return files
 
 
-def compiled_files(source: Path) -> Files:
+def files_with_translated_headers(source: Path) -> Files:
     files = loop_files(source)
     text = files[source.name]
     needed = {name: entries for name, entries in KERNELS.items() if name.encode() in text}
     return {**files, **{name: translate(entries).encode() for name, entries in needed.items()}}
 
 
-def export(source: Path, platform: str) -> bytes:
-    kept = "__declspec(dllexport)" if platform.endswith("-windows") else VISIBLE
-    token = f'{kept} const char token[] = "{guid(source)}";\n'.encode()
-    return link(platform, source.stem, {**compiled_files(source), "token.c": token})
+def compile_loop(source: Path, platform: str) -> bytes:
+    visibility = "__declspec(dllexport)" if platform.endswith("-windows") else VISIBLE
+    token = f'{visibility} const char token[] = "{guid(source)}";\n'.encode()
+    return compile_and_link(
+        platform, source.stem, {**files_with_translated_headers(source), "token.c": token}
+    )
 
 
-def file_name(source: Path, platform: str) -> str:
+def library_name(source: Path, platform: str) -> str:
     if platform not in PLATFORMS:
         raise CannotExport(f"platform {platform}: expected one of {', '.join(PLATFORMS)}")
     return f"{platform}/{source.stem}{PLATFORMS[platform].suffix}"
 
 
-def digest(library: bytes) -> str:
+def library_digest(library: bytes) -> str:
     return hashlib.sha256(library).hexdigest()
 
 
-def digest_file(path: Path) -> Path:
+def digest_path(path: Path) -> Path:
     return path.with_name(f"{path.name}.sha256")
 
 
-def is_current(path: Path, token: str) -> bool:
+def is_current_and_undamaged(path: Path, token: str) -> bool:
     """Return whether a library is of the sources with this token, and as it was compiled."""
     try:
-        library, written = path.read_bytes(), digest_file(path).read_bytes()
+        library, written = path.read_bytes(), digest_path(path).read_bytes()
     except OSError:
         return False
-    return token.encode() in library and written == digest(library).encode()
+    return token.encode() in library and written == library_digest(library).encode()

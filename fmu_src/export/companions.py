@@ -28,7 +28,7 @@ RELATED = (  # file, type, role, description
 )
 
 
-def companions(model: Model) -> Files:
+def companion_files(model: Model) -> Files:
     licence = (ROOT / "models" / "license.txt").read_bytes()
     return {
         "terminalsAndIcons/terminalsAndIcons.xml": terminals_xml(model),

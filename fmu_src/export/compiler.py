@@ -20,8 +20,8 @@ from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from .errors import EXTRA, CannotExport, require
-from .platforms import PLATFORMS, this_machine
+from .errors import EXTRA, CannotExport, require_package
+from .platforms import PLATFORMS, platform_of_this_machine
 
 log = logging.getLogger(__name__)
 FLAGS = (
@@ -49,74 +49,86 @@ def warn_once(line: str) -> None:
     log.warning("%s", line)
 
 
-def ziglang(*arguments: str) -> list[str]:
-    require("ziglang", "compiles the kernel")
+def ziglang_command(*arguments: str) -> list[str]:
+    require_package("ziglang", "compiles the kernel")
     return [sys.executable, "-m", "ziglang", *arguments]
 
 
-def own_compiler(name: str) -> list[str]:
+def own_compiler_command(platform: str) -> list[str]:
     """Return the command of the machine's own C compiler; an empty list where ziglang is there."""
     if importlib.util.find_spec("ziglang"):
         return []
     own = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-    if own and name == this_machine():
+    if own and platform == platform_of_this_machine():
         return [own]
     raise CannotExport(
-        f"no C compiler for {name}: expected {EXTRA} (ziglang), or, for the machine's own "
+        f"no C compiler for {platform}: expected {EXTRA} (ziglang), or, for the machine's own "
         "platform, cc, gcc or clang"
     )
 
 
-def run(command: Iterable[str], folder: str | Path, what: str) -> None:
+def run_compiler(command: Iterable[str], folder: str | Path, target: str) -> None:
     done = subprocess.run([*command], cwd=folder, capture_output=True, text=True)
     if done.returncode != 0:
-        told = done.stderr.splitlines()
-        lines = [line for line in told if "error" in line] or told or ["no reason given"]
-        raise CannotExport(f"the C compiler failed for {what}: {lines[0]}")
+        output = done.stderr.splitlines()
+        lines = [line for line in output if "error" in line] or output or ["no reason given"]
+        raise CannotExport(f"the C compiler failed for {target}: {lines[0]}")
 
 
-def zig_target(name: str) -> list[str]:
-    of = PLATFORMS[name]
-    return ["-target", of.zig_target, f"-mcpu={of.cpu}"]
+def zig_target_options(platform: str) -> list[str]:
+    target = PLATFORMS[platform]
+    return ["-target", target.zig_target, f"-mcpu={target.cpu}"]
 
 
-def compile_command(name: str) -> list[str]:
-    is_windows = name.endswith("-windows")
-    compiler = own_compiler(name) or [*ziglang("cc"), *zig_target(name), *CLANG_FLAGS]
+def compile_command(platform: str) -> list[str]:
+    is_windows = platform.endswith("-windows")
+    compiler = own_compiler_command(platform) or [
+        *ziglang_command("cc"),
+        *zig_target_options(platform),
+        *CLANG_FLAGS,
+    ]
     return [*compiler, *FLAGS, *(WINDOWS_FLAGS if is_windows else ["-fPIC"]), "-c"]
 
 
-def link_command(name: str, title: str, objects: Iterable[str]) -> list[str]:
-    target = f"{title}{PLATFORMS[name].suffix}"
-    own = own_compiler(name)
+def link_command(platform: str, title: str, objects: Iterable[str]) -> list[str]:
+    file = f"{title}{PLATFORMS[platform].suffix}"
+    own = own_compiler_command(platform)
     if own:
-        return [*own, "-shared", "-s", "-o", target, *objects]
-    command = [*ziglang("build-lib"), *zig_target(name), *LINK_FLAGS, "--name", title]
-    if name.endswith("-windows"):
+        return [*own, "-shared", "-s", "-o", file, *objects]
+    command = [
+        *ziglang_command("build-lib"),
+        *zig_target_options(platform),
+        *LINK_FLAGS,
+        "--name",
+        title,
+    ]
+    if platform.endswith("-windows"):
         command += ["-fno-entry", "-fno-emit-implib"]
         command += [f"-lapi-ms-win-crt-{part}-l1-1-0" for part in WINDOWS_PARTS]
     else:
         command += ["-lc", "-fno-compiler-rt"]
-    if name.endswith("-darwin"):
-        command += ["-install_name", f"@rpath/{target}"]
-    return [*command, f"-femit-bin={target}", *objects]
+    if platform.endswith("-darwin"):
+        command += ["-install_name", f"@rpath/{file}"]
+    return [*command, f"-femit-bin={file}", *objects]
 
 
-def kernel_object(name: str, source: bytes) -> bytes:
-    return compile_object((*compile_command(name), "kernel.c", "-o", "kernel.o"), source, name)
+def compile_kernel(platform: str, source: bytes) -> bytes:
+    return compile_object(
+        (*compile_command(platform), "kernel.c", "-o", "kernel.o"), source, platform
+    )
 
 
 @functools.cache
-def compile_object(command: tuple[str, ...], source: bytes, what: str) -> bytes:
+def compile_object(command: tuple[str, ...], source: bytes, target: str) -> bytes:
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as folder:
         (Path(folder) / "kernel.c").write_bytes(source)
-        run(command, folder, what)
+        run_compiler(command, folder, target)
         return (Path(folder) / "kernel.o").read_bytes()
 
 
-def link(name: str, title: str, files: Mapping[str, bytes]) -> bytes:
+def compile_and_link(platform: str, title: str, files: Mapping[str, bytes]) -> bytes:
     """Compile and link named files to a library called ``title``; return its bytes."""
-    files = {**files, **(windows_sources() if name.endswith("-windows") else {})}
+    files = {**files, **(windows_sources() if platform.endswith("-windows") else {})}
     objects = [file for file in files if file.endswith(".o")]
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as place:
         folder = Path(place)
@@ -124,33 +136,35 @@ def link(name: str, title: str, files: Mapping[str, bytes]) -> bytes:
             (folder / file).write_bytes(content)
         for unit in [file for file in files if file.endswith(".c")]:
             objects.append(f"{Path(unit).stem}.o")
-            run([*compile_command(name), unit, "-o", objects[-1]], folder, name)
-        run(link_command(name, title, objects), folder, name)
-        return (folder / f"{title}{PLATFORMS[name].suffix}").read_bytes()
+            run_compiler([*compile_command(platform), unit, "-o", objects[-1]], folder, platform)
+        run_compiler(link_command(platform, title, objects), folder, platform)
+        return (folder / f"{title}{PLATFORMS[platform].suffix}").read_bytes()
 
 
 def windows_sources() -> dict[str, bytes]:
-    require("ziglang", "brings the C library of Windows")
+    require_package("ziglang", "brings the C library of Windows")
     spec = importlib.util.find_spec("ziglang")
     assert spec is not None and spec.origin is not None
     folder = Path(spec.origin).parent / WINDOWS_FOLDER
     return {name: (folder / name).read_bytes() for name in WINDOWS_SOURCES}
 
 
-def link_all(
+def link_for_platforms(
     names: Iterable[str], title: str, kernel: bytes, files: Mapping[str, bytes]
 ) -> dict[str, bytes]:
     """Link a library for all platforms that can be made here; warn of those left out."""
 
-    def library(name: str) -> bytes | CannotExport:
+    def link_or_reason(platform: str) -> bytes | CannotExport:
         try:
-            return link(name, title, {**files, "kernel.o": kernel_object(name, kernel)})
+            return compile_and_link(
+                platform, title, {**files, "kernel.o": compile_kernel(platform, kernel)}
+            )
         except CannotExport as reason:
             return reason
 
     wanted = tuple(names)
     with ThreadPoolExecutor(os.cpu_count()) as threads:
-        results = dict(zip(wanted, threads.map(library, wanted), strict=True))
+        results = dict(zip(wanted, threads.map(link_or_reason, wanted), strict=True))
     made = {name: result for name, result in results.items() if isinstance(result, bytes)}
     reasons = [result for result in results.values() if isinstance(result, CannotExport)]
     if not made:

@@ -102,6 +102,7 @@ def root_element(model: Model, **attributes: str) -> ET.Element:
 
 
 def add_shared_elements(parent: ET.Element, model: Model) -> ET.Element:
+    """Add units, log categories, default experiment and an empty table; return the table."""
     add_units(parent, model)
     categories = ET.SubElement(parent, "LogCategories")
     for name, explanation in LOG_CATEGORIES.items():
@@ -134,7 +135,7 @@ def variable_attributes(variable: Variable, reference: int) -> dict[str, str]:
     return {**found, "initial": variable.initial} if variable.initial else found
 
 
-def add_values(typed: ET.Element, variable: Variable) -> None:
+def add_type_attributes(typed: ET.Element, variable: Variable) -> None:
     limits = {"min": variable.minimum, "max": variable.maximum}
     given = {key: value for key, value in limits.items() if value is not None}
     if variable.type == REAL:

@@ -38,17 +38,17 @@ def fmi2_xml(
     variables = common.add_shared_elements(root, model)
     for variable in model.variables:
         add_variable(variables, variable)
-    add_structure(root, model)
+    add_model_structure(root, model)
     return common.xml_bytes(root)
 
 
 def add_variable(parent: ET.Element, variable: Variable) -> None:
     attributes = common.variable_attributes(variable, variable.slot)
     scalar = ET.SubElement(parent, "ScalarVariable", attributes)
-    common.add_values(ET.SubElement(scalar, variable.type), variable)
+    common.add_type_attributes(ET.SubElement(scalar, variable.type), variable)
 
 
-def add_structure(root: ET.Element, model: Model) -> None:
+def add_model_structure(root: ET.Element, model: Model) -> None:
     """Add dependencies: outputs belong to the last communication point, few depend on inputs."""
     structure = ET.SubElement(root, "ModelStructure")
     index = {variable.name: str(i + 1) for i, variable in enumerate(model.variables)}

@@ -32,7 +32,7 @@ def fmi3_xml(model: Model, token: str) -> bytes:
     for i, array in enumerate(model.arrays):
         add_array(variables, model, array, ARRAY_BASE + i)
     add_clock(variables, model)
-    add_structure(root, model)
+    add_model_structure(root, model)
     return common.xml_bytes(root)
 
 
@@ -50,7 +50,7 @@ def add_time(parent: ET.Element, model: Model) -> None:
 
 def add_variable(parent: ET.Element, variable: Variable) -> None:
     attributes = common.variable_attributes(variable, variable.slot)
-    common.add_values(ET.SubElement(parent, TYPES[variable.type], attributes), variable)
+    common.add_type_attributes(ET.SubElement(parent, TYPES[variable.type], attributes), variable)
 
 
 def array_elements(model: Model, array: Array) -> tuple[Variable, ...]:
@@ -78,7 +78,7 @@ def add_clock(parent: ET.Element, model: Model) -> None:
         ET.SubElement(parent, "Clock", attributes)
 
 
-def add_structure(root: ET.Element, model: Model) -> None:
+def add_model_structure(root: ET.Element, model: Model) -> None:
     structure = ET.SubElement(root, "ModelStructure")
     calculated: list[tuple[int, tuple[Variable, ...]]]
     calculated = [(v.slot, (v,)) for v in model.variables if v.causality == "output"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..runtime.table import Variable
 from .archive import read_folder
-from .companions import companions, icon_path
+from .companions import companion_files, icon_path
 from .sources import ROOT, Files, load_model
 
 
@@ -18,7 +18,7 @@ def documentation_files(
     files["documentation/index.html"] = model_page(template, folder, digest, form, variables)
     files.update(read_folder(place / "reference", "documentation/reference/"))
     files[icon_path(form[:4])] = (place / "model.png").read_bytes()
-    return {**files, **companions(load_model(folder))}
+    return {**files, **companion_files(load_model(folder))}
 
 
 def model_page(

@@ -11,7 +11,7 @@ class CannotExport(Exception):
     """An FMU cannot be made on this machine; the message says why, as one line."""
 
 
-def require(package: str, what: str) -> None:
-    """Raise ``CannotExport`` unless a package of the extra ``build``, which ``what``, is there."""
+def require_package(package: str, purpose: str) -> None:
+    """Raise ``CannotExport`` unless a package of the extra ``build`` is there; it ``purpose``."""
     if importlib.util.find_spec(package) is None:
-        raise CannotExport(f"{package}, which {what}, is not installed: expected {EXTRA}")
+        raise CannotExport(f"{package}, which {purpose}, is not installed: expected {EXTRA}")

@@ -5,20 +5,29 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from .platforms import chosen
+from .platforms import select_platforms
 
-__all__ = ["ALL_FORMS", "FORMS", "MODELS", "PLAIN_FORMS", "chosen", "export", "guid", "sources_of"]
+__all__ = [
+    "ALL_FORMS",
+    "FORMS",
+    "MODELS",
+    "PLAIN_FORMS",
+    "export",
+    "guid",
+    "select_platforms",
+    "source_forms_of",
+]
 PYTHON_FORM = "fmi2-python"
 FORMS = (PYTHON_FORM, "fmi2", "fmi3")
 PLAIN_FORMS = ("fmi2-plain", "fmi3-plain")
 
 
-def sources_of(forms: Iterable[str]) -> tuple[str, ...]:
+def source_forms_of(forms: Iterable[str]) -> tuple[str, ...]:
     """Return the source forms, for targets that compile C, of some native forms."""
     return tuple(f"{form}-sources" for form in forms if form != PYTHON_FORM)
 
 
-ALL_FORMS = FORMS + PLAIN_FORMS + sources_of(FORMS + PLAIN_FORMS)
+ALL_FORMS = FORMS + PLAIN_FORMS + source_forms_of(FORMS + PLAIN_FORMS)
 MODELS = {  # the folder of each model below fmu_src/models
     "TwoMassImpactOscillator": "oscillator",
     "MotorShaker": "motor_shaker",

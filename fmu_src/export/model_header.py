@@ -32,7 +32,7 @@ def c_number(value: float) -> str:
     return float(value).hex()
 
 
-def c_variable(variable: Variable, model: Model) -> str:
+def c_variable_row(variable: Variable, model: Model) -> str:
     minimum = -math.inf if variable.minimum is None else variable.minimum
     maximum = math.inf if variable.maximum is None else variable.maximum
     cells = [
@@ -46,7 +46,7 @@ def c_variable(variable: Variable, model: Model) -> str:
         c_number(minimum),
         c_number(maximum),
         str(variable.input_derivatives),
-        str(model.set_flags.get(variable.slot, 0)),
+        str(model.set_flag_by_slot.get(variable.slot, 0)),
         str(model.rate_slot(variable)),
         str(int(bool(variable.series))),
     ]
@@ -93,7 +93,7 @@ def model_header(model: Model, token: str, digest: str, real_outputs: bool = Fal
         "MODEL_TOKEN": c_string(token),
         "STATE_MAGIC": c_string(f"vibroimpact state {digest}"),
         **shim_macros(model, slots, real_outputs),
-        **self_test.self_test_definitions(model),
+        **self_test.self_test_macros(model),
     }
     categories = ", ".join(map(c_string, TAKEN_CATEGORIES))
     arrays = [f"    {{{slots[array.first]}, {array.size}}}," for array in model.arrays]
@@ -109,7 +109,7 @@ def model_header(model: Model, token: str, digest: str, real_outputs: bool = Fal
         "extern const Variable VARIABLES[VARIABLE_COUNT];",
         "#if defined(DEFINE_VARIABLES)  /* in one file */",
         "const Variable VARIABLES[VARIABLE_COUNT] = {",
-        *(c_variable(variable, model) for variable in model.variables),
+        *(c_variable_row(variable, model) for variable in model.variables),
         "};",
         "#endif",
         "static const Array ARRAYS[] = {",

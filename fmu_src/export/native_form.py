@@ -10,22 +10,22 @@ from pathlib import Path
 
 from ..runtime.table import BOOLEAN, REAL, Model, Variable
 from .archive import guid_of, write_archive
-from .compiler import link_all
+from .compiler import link_for_platforms
 from .description_fmi2 import fmi2_xml
 from .description_fmi3 import fmi3_xml
 from .documentation import documentation_files
-from .errors import require
+from .errors import require_package
 from .model_header import model_header
-from .platforms import binary_files, usual
-from .source_code import compiled_files, kernel_source, source_files
+from .platforms import binary_files, default_platforms
+from .source_code import c_file_names, kernel_c_source, sources_folder
 from .sources import (
     Files,
-    check_unedited,
     exporter_files,
     load_model,
     model_digest,
     model_sources,
     read_sources,
+    require_unedited_sources,
     text_files,
 )
 
@@ -56,12 +56,12 @@ def shim_sources(version: str) -> Files:
 
 def fmi_headers(version: str) -> Files:
     """Return the standard's C headers, which come with FMPy."""
-    require("fmpy", "brings the C headers of the FMI standard")
+    require_package("fmpy", "brings the C headers of the FMI standard")
     folder = resources.files("fmpy") / "c-code"
-    return {name: with_prefix((folder / name).read_bytes()) for name in HEADERS[version]}
+    return {name: with_standard_prefix((folder / name).read_bytes()) for name in HEADERS[version]}
 
 
-def with_prefix(header: bytes) -> bytes:
+def with_standard_prefix(header: bytes) -> bytes:
     """Return FMI 2.0's header with the standard's prefix, which FMPy's copy may lack."""
     if b"defined(FMI2_FUNCTION_PREFIX)" in header:
         return header
@@ -107,21 +107,21 @@ def export(folder: str, form: str, target: Path, platforms: tuple[str, ...] | No
     header = {"model.h": model_header(model, token, digest, real_outputs="-plain" in form)}
     shim = {**shim_sources(version), **fmi_headers(version), **header}
     described = plain_model(model) if "-plain" in form else model
-    kernel = kernel_source(folder)
+    kernel = kernel_c_source(folder)
     sources = {**shim, "kernel.c": kernel}
-    files = source_files(model.name, version, sources)
+    files = sources_folder(model.name, version, sources)
     files["modelDescription.xml"] = (
-        fmi2_xml(described, token, sources=compiled_files(sources))  # FMI 3.0 has a file of them
+        fmi2_xml(described, token, sources=c_file_names(sources))  # FMI 3.0 has a file of them
         if version == "fmi2"
         else fmi3_xml(described, token)
     )
     if not form.endswith("-sources"):
-        made = link_all(platforms or usual(), model.name, kernel, shim)
+        made = link_for_platforms(platforms or default_platforms(), model.name, kernel, shim)
         files.update(binary_files(version, model.name, made))
     files.update(documentation_files(folder, digest, form, described.variables))
     python = {k: v for k, v in model_sources(folder).items() if k.startswith("kernels/")}
     files.update({f"documentation/{name}": content for name, content in python.items()})
-    check_unedited()
+    require_unedited_sources()
     path = target / f"{model.name}.fmu"
     write_archive(path, files)
     return path

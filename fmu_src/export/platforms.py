@@ -36,21 +36,25 @@ FAT_MAGIC, FAT_ALIGNMENT = 0xCAFEBABE, 14  # of macOS; slices begin at multiples
 CPU_TYPE = 4  # where a Mach-O file has its processor's type, and its subtype after it
 
 
-def this_machine() -> str:
+def platform_of_this_machine() -> str:
     """Return the name of the platform this process runs on; it need not be in :data:`PLATFORMS`."""
     found = machine.machine().lower()
     return f"{ARCHITECTURES.get(found, found)}-{SYSTEMS.get(sys.platform, sys.platform)}"
 
 
-def usual() -> tuple[str, ...]:
-    return tuple(name for name in ALL if name in ("x86_64-linux", "x86_64-windows", this_machine()))
+def default_platforms() -> tuple[str, ...]:
+    return tuple(
+        name
+        for name in ALL
+        if name in ("x86_64-linux", "x86_64-windows", platform_of_this_machine())
+    )
 
 
-def chosen(wanted: Iterable[str]) -> tuple[str, ...]:
+def select_platforms(wanted: Iterable[str]) -> tuple[str, ...]:
     """Return platforms by name, ``all`` and ``this`` included; raise for unknown ones."""
     names: set[str] = set()
     for name in wanted:
-        names.update({"all": ALL, "this": (this_machine(),)}.get(name, (name,)))
+        names.update({"all": ALL, "this": (platform_of_this_machine(),)}.get(name, (name,)))
     for name in sorted(names - set(ALL)):
         raise CannotExport(f"platform {name}: expected all, this, or one of {', '.join(ALL)}")
     return tuple(name for name in ALL if name in names)

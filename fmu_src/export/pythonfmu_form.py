@@ -19,22 +19,22 @@ from pathlib import Path
 
 from ..runtime.compiled import LIBRARIES
 from ..runtime.table import Model
-from .archive import fingerprint, guid_of, write_archive
-from .compiler import link_all, own_compiler, warn_once
+from .archive import content_hash, guid_of, write_archive
+from .compiler import link_for_platforms, own_compiler_command, warn_once
 from .description_fmi2 import PYTHON, fmi2_xml
 from .documentation import documentation_files
-from .errors import EXTRA, CannotExport, require
-from .platforms import PLATFORMS, this_machine
+from .errors import EXTRA, CannotExport, require_package
+from .platforms import PLATFORMS, platform_of_this_machine
 from .self_test import has_right_bits
-from .source_code import kernel_source
+from .source_code import kernel_c_source
 from .sources import (
     ROOT,
     Files,
-    check_unedited,
     exporter_files,
     import_closure,
     load_model,
     read_sources,
+    require_unedited_sources,
     text_files,
 )
 
@@ -47,9 +47,9 @@ def embedded_sources(folder: str) -> Files:
 
 
 def source_digest(folder: str) -> str:
-    """Return the fingerprint of all that runs in the FMU; the GUID is made of it."""
+    """Return the content_hash of all that runs in the FMU; the GUID is made of it."""
     more = {**read_sources(SCRIPT), "pythonfmu": PYTHONFMU.encode()}
-    return fingerprint({**embedded_sources(folder), **more})
+    return content_hash({**embedded_sources(folder), **more})
 
 
 def guid(folder: str) -> str:
@@ -57,24 +57,24 @@ def guid(folder: str) -> str:
     return guid_of({**exporter_files("export/pythonfmu_form.py"), **text_files(folder), **sources})
 
 
-def check_pythonfmu() -> None:
-    require("pythonfmu", "puts the FMU together")
+def require_pythonfmu() -> None:
+    require_package("pythonfmu", "puts the FMU together")
     if metadata.version("pythonfmu") != PYTHONFMU:
         found = metadata.version("pythonfmu")
         raise CannotExport(f"pythonfmu is {found}: expected {PYTHONFMU}, as in {EXTRA}")
 
 
 def export(folder: str, target: Path) -> Path:
-    check_pythonfmu()
+    require_pythonfmu()
     model, digest = load_model(folder), source_digest(folder)
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as scratch:
         script, package = write_sources(Path(scratch), folder, digest)
-        for name, library in libraries(folder, model).items():
+        for name, library in compile_libraries(folder, model).items():
             (package / name).write_bytes(library)
-        files = run_pythonfmu(script, package, Path(scratch) / "built.fmu")
+        files = build_with_pythonfmu(script, package, Path(scratch) / "built.fmu")
     files["modelDescription.xml"] = fmi2_xml(model, guid(folder), PYTHON)
     files.update(documentation_files(folder, digest, "fmi2-python", model.variables))
-    check_unedited()
+    require_unedited_sources()
     path = target / f"{model.name}.fmu"
     write_archive(path, files)
     return path
@@ -94,24 +94,26 @@ def write_sources(scratch: Path, folder: str, digest: str) -> tuple[Path, Path]:
     return script, package
 
 
-def libraries(folder: str, model: Model) -> Files:
+def compile_libraries(folder: str, model: Model) -> Files:
     optional = {"REFRESH": model.refresh, "COAST": model.coast}
     known = "".join(f"#define {name}\n" for name, entry in optional.items() if entry).encode()
     entry = known + (ROOT / "runtime" / "native" / "library.c").read_bytes()
     try:
         platforms = tuple(dict.fromkeys(platform for platform, _ in LIBRARIES.values()))
-        made = link_all(platforms, "kernel", kernel_source(folder), {"library.c": entry})
-        check_bits(model, made)
+        made = link_for_platforms(
+            platforms, "kernel", kernel_c_source(folder), {"library.c": entry}
+        )
+        require_right_bits(model, made)
     except CannotExport as reason:
         warn_once(f"the FMUs of the form fmi2-python will run in pure Python: {reason}")
         return {}
     return {library: made[name] for name, library in LIBRARIES.values() if name in made}
 
 
-def check_bits(model: Model, made: Mapping[str, bytes]) -> None:
+def require_right_bits(model: Model, made: Mapping[str, bytes]) -> None:
     """Check the bits of a kernel by the machine's own compiler: native forms check themselves."""
-    name = this_machine()
-    if name not in made or not own_compiler(name):
+    name = platform_of_this_machine()
+    if name not in made or not own_compiler_command(name):
         return
     with tempfile.TemporaryDirectory(prefix="vibroimpact-", ignore_cleanup_errors=True) as place:
         library = Path(place) / f"kernel{PLATFORMS[name].suffix}"
@@ -120,7 +122,7 @@ def check_bits(model: Model, made: Mapping[str, bytes]) -> None:
             raise CannotExport("the machine's own C compiler changes the kernel's last digits")
 
 
-def run_pythonfmu(script: Path, package: Path, built: Path) -> Files:
+def build_with_pythonfmu(script: Path, package: Path, built: Path) -> Files:
     command = [sys.executable, "-m", __name__, str(script), str(package), str(built)]
     done = subprocess.run(command, cwd=ROOT.parent, capture_output=True, text=True)
     if done.returncode != 0:

@@ -22,8 +22,8 @@ CHANGE = 0.125
 MASK = (1 << 64) - 1
 
 
-def fingerprint(total: int, values: list[float]) -> int:
-    """Return a number that depends on every bit of the values and on their order."""
+def mix_into_sum(total: int, values: list[float]) -> int:
+    """Return a checksum with more values: it depends on their every bit and on their order."""
     for value in values:
         (bits,) = struct.unpack("<Q", struct.pack("<d", value))
         total = ((total << 7) | (total >> 57)) & MASK ^ bits
@@ -32,7 +32,7 @@ def fingerprint(total: int, values: list[float]) -> int:
 
 @functools.cache
 def expected_sum(model: Model) -> int:
-    """Return the fingerprint of the run by the model's Python; see :func:`sum_of_run`."""
+    """Return the checksum of the run by the model's Python; see :func:`sum_of_run`."""
     return sum_of_run(model, [0.0] * model.memory_size, model.initialize, model.advance)
 
 
@@ -45,7 +45,7 @@ def has_right_bits(model: Model, path: Path) -> bool:
 
 
 def sum_of_run(model: Model, memory: Any, initialize: Entry, advance: Entry) -> int:
-    """Return the fingerprint of a short run in a memory of zeros; half way all inputs move."""
+    """Return the checksum of a short run in a memory of zeros; half way all inputs move."""
     total = 0
     for variable in model.variables:
         memory[variable.slot] = 0.0 if variable.calculated else float(variable.start)
@@ -54,16 +54,16 @@ def sum_of_run(model: Model, memory: Any, initialize: Entry, advance: Entry) -> 
         for variable in model.variables if step == STEPS // 2 else ():
             if variable.type == REAL and not (variable.calculated or variable.fixed):
                 memory[variable.slot] += CHANGE
-            if variable.slot in model.set_flags:
-                memory[model.set_flags[variable.slot]] = 1.0
+            if variable.slot in model.set_flag_by_slot:
+                memory[model.set_flag_by_slot[variable.slot]] = 1.0
         codes.append(advance(memory, step * STEP))
-        total = fingerprint(total, memory[: len(model.variables)])
+        total = mix_into_sum(total, memory[: len(model.variables)])
     if any(codes):
         raise RuntimeError(f"{model.name}: the run of the self-test fails with code {max(codes)}")
     return total
 
 
-def self_test_definitions(model: Model) -> dict[str, str]:
+def self_test_macros(model: Model) -> dict[str, str]:
     return {
         "SELF_TEST_STEPS": str(STEPS),
         "SELF_TEST_STEP": STEP.hex(),

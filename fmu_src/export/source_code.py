@@ -32,19 +32,20 @@ endif()
 
 
 @functools.cache
-def kernel_source(folder: str) -> bytes:
-    return translate(load_model(folder).entries).encode()
+def kernel_c_source(folder: str) -> bytes:
+    return translate(load_model(folder).entry_points).encode()
 
 
-def compiled_files(files: Files) -> list[str]:
+def c_file_names(files: Files) -> list[str]:
     return sorted(name for name in files if name.endswith(".c"))
 
 
-def source_files(name: str, version: str, files: Files) -> Files:
-    cmake = CMAKE.format(name=name, units=" ".join(compiled_files(files)), options=OPTIONS)
+def sources_folder(name: str, version: str, files: Files) -> Files:
+    """Return the files below ``sources/``: C sources, and how to build them."""
+    cmake = CMAKE.format(name=name, units=" ".join(c_file_names(files)), options=OPTIONS)
     inside = {**files, "CMakeLists.txt": cmake.encode()}
     if version == "fmi3":
-        inside["buildDescription.xml"] = build_description(name, compiled_files(files))
+        inside["buildDescription.xml"] = build_description(name, c_file_names(files))
     return {f"sources/{file}": content for file, content in inside.items()}
 
 

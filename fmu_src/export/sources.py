@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 
 from ..runtime.table import Model
-from .archive import fingerprint, read_folder
+from .archive import content_hash, read_folder
 from .errors import CannotExport
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -79,8 +79,8 @@ def model_sources(folder: str) -> Files:
 
 
 def model_digest(folder: str) -> str:
-    """Return the fingerprint of a model, by which native forms know each other's saved states."""
-    return fingerprint(model_sources(folder))
+    """Return the content_hash of a model, by which native forms know each other's saved states."""
+    return content_hash(model_sources(folder))
 
 
 def text_files(folder: str) -> Files:
@@ -92,7 +92,7 @@ def text_files(folder: str) -> Files:
     return {**own, **read_sources(*(f"models/{name}" for name in names))}
 
 
-def check_unedited() -> None:
+def require_unedited_sources() -> None:
     """Raise if a source was edited since this process began: the FMU would be made of both."""
     now = read_folder(ROOT)
     edited = sorted(name for name in {*AT_IMPORT, *now} if AT_IMPORT.get(name) != now.get(name))

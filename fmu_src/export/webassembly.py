@@ -13,13 +13,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from .archive import guid_of, read_folder
-from .c_library import HEADER, LOOPS, compiled_files
-from .compiler import CLANG_FLAGS, FLAGS, run, ziglang
+from .c_library import HEADER, LOOPS, files_with_translated_headers
+from .compiler import CLANG_FLAGS, FLAGS, run_compiler, ziglang_command
 from .description_fmi3 import ARRAY_BASE
 from .model_header import model_header
 from .native_form import fmi_headers, shim_sources
-from .source_code import kernel_source
-from .sources import ROOT, Files, check_unedited, exporter_files, load_model, model_digest
+from .source_code import kernel_c_source
+from .sources import ROOT, Files, exporter_files, load_model, model_digest, require_unedited_sources
 
 TARGET = ("-target", "wasm32-wasi", "-mcpu=mvp+bulk_memory+nontrapping_fptoint")  # WASI has headers
 LINK_FLAGS = ("-mexec-model=reactor", "-Wl,--no-entry", "-Wl,--strip-all")
@@ -48,44 +48,49 @@ def guid() -> str:
     return guid_of({**files, **{name: model_digest(name).encode() for name in MODELS}})
 
 
-def sources(folder: str) -> Files:
+def model_files(folder: str) -> Files:
     header = model_header(load_model(folder), guid(), model_digest(folder))
     shim = {**shim_sources("fmi3"), **fmi_headers("fmi3"), "model.h": header}
     return {
-        "kernel.c": kernel_source(folder),
+        "kernel.c": kernel_c_source(folder),
         **shim,
         **read_folder(WEB),
         HEADER: (LOOPS / HEADER).read_bytes(),
     }
 
 
-def export() -> bytes:
-    compiler = [*ziglang("cc"), *TARGET]
+def compile_module() -> bytes:
+    compiler = [*ziglang_command("cc"), *TARGET]
     names = [*OF_LOOPS, *(f"{model}_{name}" for model in MODELS for name in OF_MODELS)]
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as place:
         objects = []
         for model in MODELS:
             flags = [*FLAGS, f"-DFMI3_FUNCTION_PREFIX={model}_"]
-            objects += compile_units(compiler, flags, Path(place) / model, sources(model))
-        loops = {k: v for name in IN_PAGES for k, v in compiled_files(LOOPS / name).items()}
+            objects += compile_units(compiler, flags, Path(place) / model, model_files(model))
+        loops = {
+            k: v
+            for name in IN_PAGES
+            for k, v in files_with_translated_headers(LOOPS / name).items()
+        }
         objects += compile_units(compiler, FLAGS, Path(place) / "loops", loops)
         exported = [f"-Wl,--export={name}" for name in names]
         linked = [*compiler, *LINK_FLAGS, *exported, *objects, "-o", "kernel.wasm"]
-        run(linked, place, "WebAssembly")
-        check_unedited()
+        run_compiler(linked, place, "WebAssembly")
+        require_unedited_sources()
         return (Path(place) / "kernel.wasm").read_bytes() + custom_section(SECTION, guid())
 
 
 def compile_units(
     compiler: Sequence[str], flags: Sequence[str], folder: Path, files: Files
 ) -> list[str]:
+    """Write files into a folder and compile those in C; return the paths of the objects."""
     folder.mkdir()
     for name, content in files.items():
         (folder / name).write_bytes(content)
     units = [name for name in files if name.endswith(".c")]
     for unit in units:
         own = [*flags, *(CLANG_FLAGS if unit == "kernel.c" else ())]
-        run([*compiler, *own, "-c", unit, "-o", f"{unit}.o"], str(folder), "WebAssembly")
+        run_compiler([*compiler, *own, "-c", unit, "-o", f"{unit}.o"], str(folder), "WebAssembly")
     return [str(folder / f"{unit}.o") for unit in units]
 
 
@@ -100,7 +105,7 @@ def guid_inside(module: bytes) -> str:
     return found[1].decode() if found else ""
 
 
-def references(folder: str) -> dict[str, int]:
+def value_references(folder: str) -> dict[str, int]:
     model = load_model(folder)
     arrays = {array.name: ARRAY_BASE + i for i, array in enumerate(model.arrays)}
     return {v.name: v.slot for v in model.variables if not v.series} | arrays

@@ -22,7 +22,7 @@ loaded: dict[
 ] = {}  # libraries of this process: ctypes makes new classes at every load
 
 
-def load_compiled(folder: str, key: str, names: Sequence[str]) -> list[Any] | None:
+def load_compiled_kernel(folder: str, key: str, names: Sequence[str]) -> list[Any] | None:
     """Return the entry points of the library in a folder, if any; ``key`` names its contents."""
     machine = (sys.platform, platform.machine().lower())
     path = os.path.join(folder, LIBRARIES.get(machine, ("", "none"))[1])

@@ -17,8 +17,8 @@ import sys
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
-from .compiled import load_compiled
-from .table import BOOLEAN, INTEGER, REAL, Model, Variable, explain, hidden_problem
+from .compiled import load_compiled_kernel
+from .table import BOOLEAN, INTEGER, REAL, Model, Variable, format_message, hidden_slot_problem
 
 PHASES = INSTANTIATED, INITIALIZING, STEPPING, TERMINATED = 0.0, 1.0, 2.0, 3.0
 ERRORS, WARNINGS, ALL = "logStatusError", "logStatusWarning", "logAll"  # of messages
@@ -81,14 +81,14 @@ class Logger(ctypes.Structure):
         places = range(self.begin, self.end, ctypes.sizeof(Text))
         return [Text.from_address(place).read().decode() for place in places]
 
-    def hand_over(self, category: str, text: str) -> None:
+    def send(self, category: str, text: str) -> None:
         functions = self.functions.contents
         message = text.replace("%", "%%").encode()  # it is a printf format
         name, status = self.name.read(), 3  # fmi2Error
         functions.log(functions.environment, name, status, category.encode(), message)
 
 
-def keep(thing: Any) -> None:
+def add_reference(thing: Any) -> None:
     """Take one more reference to an object that pythonfmu is going to release once too often."""
     ctypes.pythonapi.Py_IncRef(ctypes.py_object(thing))
 
@@ -104,7 +104,7 @@ def state_problem(variable: Variable, value: float) -> str:
         fits = abs(value) < 2.0**31 and value == int(value)
     if fits:
         return ""
-    return f"{variable.name} = {variable.text(value)}: expected {variable.range_text()}"
+    return f"{variable.name} = {variable.format_value(value)}: expected {variable.range_text()}"
 
 
 class Slave:
@@ -119,7 +119,7 @@ class Slave:
     def __init__(self, **given: Any) -> None:
         super().__init__(**given)
         self._logger = int(given.get("logger") or 0)
-        self._entries: dict[str, Any] = {**self.model.entries}
+        self._entries: dict[str, Any] = {**self.model.entry_points}
         self._array: Any = lambda *values: list(values)
         self._choose_kernel(given.get("resources") or "")
         self._memory = self._array(*([0.0] * self.model.memory_size))
@@ -130,33 +130,33 @@ class Slave:
         self._stop_time = float("inf")  # of the experiment, not of the state
         self._warned = False  # of a step too short to advance the time
         self._stale = True  # outputs do not belong to the values set yet (initialisation mode)
-        self._set_flags = self.model.set_flags
+        self._set_flags = self.model.set_flag_by_slot
         self._checked: dict[str, Any] = {REAL: None, INTEGER: None, BOOLEAN: None}
 
     def _choose_kernel(self, resources: str) -> None:
         """Use the compiled kernel where it is there: it lies with this instance's package."""
         package = __name__.split(".")[0]  # under its content-hashed name
         names = tuple(self._entries)
-        kernel = load_compiled(os.path.join(resources, package), package, names)
+        kernel = load_compiled_kernel(os.path.join(resources, package), package, names)
         if kernel:
             self._entries = dict(zip(names, kernel))
             self._array = ctypes.c_double * self.model.memory_size
 
     # -- failing without a crash -------------------------------------------------------------------
 
-    def listening(self) -> tuple[bool, bool]:
+    def logging_on_and_unfiltered(self) -> tuple[bool, bool]:
         """Return whether the importer has switched logging on, and whether for all categories."""
         if not self._logger:
             return False, False
         logger = Logger.from_address(self._logger)
         return bool(logger.on), logger.begin == logger.end
 
-    def report(self, text: str) -> None:
+    def write_to_stderr(self, text: str) -> None:
         """Write one line to the error output, where the importer may not hear what is logged.
 
         It may take a discarded step for success.
         """
-        if all(self.listening()):
+        if all(self.logging_on_and_unfiltered()):
             return
         try:
             sys.stderr.write(f"{self.model.name} '{self.instance_name}': {text}\n")
@@ -165,13 +165,13 @@ class Slave:
             pass
 
     def refuse(self, text: str) -> NoReturn:
-        self.report(text)
-        self.hand_over(text)
+        self.write_to_stderr(text)
+        self.send_error_to_importer(text)
         for kept in (type(self), self, self.log_queue):
-            keep(kept)
+            add_reference(kept)
         raise FmuError(text.replace("%", "%%"))  # the text ends up as a printf format
 
-    def hand_over(self, text: str) -> None:
+    def send_error_to_importer(self, text: str) -> None:
         """Log an error for an importer that asked for the category of errors, which an exception
         does not reach.
 
@@ -179,24 +179,24 @@ class Slave:
         while the exception is set, and from Python 3.13 on an importer's callback written in
         Python fails then.
         """
-        on, everything = self.listening()
+        on, everything = self.logging_on_and_unfiltered()
         if on and not everything:
             logger = Logger.from_address(self._logger)
-            category = self.category()
+            category = self.error_category()
             if category in logger.categories():
-                logger.hand_over(category, text)
+                logger.send(category, text)
 
-    def category(self) -> str:
+    def error_category(self) -> str:
         if not self._logger:
             return ERRORS
         wanted = Logger.from_address(self._logger).categories()
         return ALL if ALL in wanted and ERRORS not in wanted else ERRORS
 
-    def complain(self, text: str) -> None:
+    def report_error(self, text: str) -> None:
         from pythonfmu.enums import Fmi2Status
 
-        self.report(text)
-        self.log(text.replace("%", "%%"), Fmi2Status.error, self.category())
+        self.write_to_stderr(text)
+        self.log(text.replace("%", "%%"), Fmi2Status.error, self.error_category())
 
     # -- life cycle --------------------------------------------------------------------------------
 
@@ -219,24 +219,24 @@ class Slave:
     def exit_initialization_mode(self) -> None:
         if self._phase != INITIALIZING:
             self.refuse("fmi2ExitInitializationMode: expected one call in initialisation mode")
-        self.start()
+        self.initialize_if_stale()
         self._phase = STEPPING
 
-    def start(self) -> None:
+    def initialize_if_stale(self) -> None:
         if self._stale:
-            self.enter("initialize", self._start_time)
+            self.run_entry_point("initialize", self._start_time)
 
-    def enter(self, entry: str, time: float) -> None:
+    def run_entry_point(self, entry: str, time: float) -> None:
         code = self._entries[entry](self._memory, time)
         if code:
-            self.refuse(explain(self.model, self._memory, code))
+            self.refuse(format_message(self.model, self._memory, code))
         self._stale = False
 
-    def catch_up(self) -> None:
+    def update_outputs(self) -> None:
         if self._phase == INITIALIZING:
-            self.start()
+            self.initialize_if_stale()
         elif self._phase == STEPPING and self.model.refresh:
-            self.enter("refresh", self._memory[self.model.time_slot])
+            self.run_entry_point("refresh", self._memory[self.model.time_slot])
 
     def terminate(self) -> None:
         self._phase = TERMINATED
@@ -244,11 +244,11 @@ class Slave:
     def do_step(self, current_time: float, step_size: float) -> bool:
         try:
             problem = self.step_problem(current_time, step_size)
-            problem = problem or self.step(current_time + step_size)
+            problem = problem or self.advance_to(current_time + step_size)
         except Exception as error:
             problem = f"doStep failed inside: {error!r}"
         if problem:
-            self.complain(problem)
+            self.report_error(problem)
         elif step_size > 0.0 and current_time + step_size == current_time:
             self.warn_short_step(current_time, step_size)
         return not problem
@@ -281,7 +281,8 @@ class Slave:
             return f"{text} = {self._stop_time!r} s"
         return ""
 
-    def step(self, time: float) -> str:
+    def advance_to(self, time: float) -> str:
+        """Step to a time; return why not, with the memory as before, or an empty string."""
         coast = self._entries.get("coast")
         if coast and not coast(self._memory, time):
             return ""
@@ -290,14 +291,14 @@ class Slave:
         code = self._entries["advance"](self._memory, time)
         if not code:
             return ""
-        problem = explain(self.model, self._memory, code)
+        problem = format_message(self.model, self._memory, code)
         self._memory[:first] = head
         self._memory[first + count :] = tail
         return problem
 
     # -- values ------------------------------------------------------------------------------------
 
-    def find(self, references: Sequence[int], kind: str) -> list[Variable]:
+    def variables_of_type(self, references: Sequence[int], kind: str) -> list[Variable]:
         found = []
         for reference in references:
             known = 0 <= reference < len(self.model.variables)
@@ -311,30 +312,30 @@ class Slave:
             found.append(variable)
         return found
 
-    def read(self, references: Sequence[int], kind: str) -> list[float]:
+    def read_values(self, references: Sequence[int], kind: str) -> list[float]:
         if references != self._checked[kind]:
-            self.find(references, kind)
+            self.variables_of_type(references, kind)
             self._checked[kind] = list(references)
         if self._stale:
-            self.catch_up()
+            self.update_outputs()
         return list(map(self._memory.__getitem__, references))
 
     def get_real(self, references: Sequence[int]) -> list[float]:
-        return self.read(references, REAL)
+        return self.read_values(references, REAL)
 
     def get_integer(self, references: Sequence[int]) -> list[int]:
-        return [int(value) for value in self.read(references, INTEGER)]
+        return [int(value) for value in self.read_values(references, INTEGER)]
 
     def get_boolean(self, references: Sequence[int]) -> list[bool]:
-        return [value != 0.0 for value in self.read(references, BOOLEAN)]
+        return [value != 0.0 for value in self.read_values(references, BOOLEAN)]
 
     def get_string(self, references: Sequence[int]) -> list[str]:
         """Refuse any reference: there are no String variables."""
-        self.find(references, "String")
+        self.variables_of_type(references, "String")
         return []
 
-    def write(self, references: Sequence[int], values: Sequence[float], kind: str) -> None:
-        found = self.find(references, kind)
+    def write_values(self, references: Sequence[int], values: Sequence[float], kind: str) -> None:
+        found = self.variables_of_type(references, kind)
         for variable, value in zip(found, values):
             problem = self.write_problem(variable, value)
             if problem:
@@ -346,7 +347,7 @@ class Slave:
         self._stale = True
 
     def write_problem(self, variable: Variable, value: float) -> str:
-        given = f"{variable.name} = {variable.text(value)}"
+        given = f"{variable.name} = {variable.format_value(value)}"
         if variable.calculated:
             return f"{given}: an output cannot be set, expected a parameter or an input"
         if variable.fixed and self._phase > INITIALIZING:
@@ -354,49 +355,49 @@ class Slave:
         return variable.problem(value)
 
     def set_real(self, references: Sequence[int], values: Sequence[float]) -> None:
-        self.write(references, values, REAL)
+        self.write_values(references, values, REAL)
 
     def set_integer(self, references: Sequence[int], values: Sequence[int]) -> None:
-        self.write(references, values, INTEGER)
+        self.write_values(references, values, INTEGER)
 
     def set_boolean(self, references: Sequence[int], values: Sequence[bool]) -> None:
-        self.write(references, [1.0 if value else 0.0 for value in values], BOOLEAN)
+        self.write_values(references, [1.0 if value else 0.0 for value in values], BOOLEAN)
 
     def set_string(self, references: Sequence[int], values: Sequence[str]) -> None:
         """Refuse any reference: there are no String variables."""
-        self.find(references, "String")
+        self.variables_of_type(references, "String")
 
     # -- state -------------------------------------------------------------------------------------
 
     def _get_fmu_state(self) -> bytes:
         numbers = (self._phase, self._start_time, self._stale, *self._memory)
-        return self._sealed(struct.pack(f"<{len(numbers)}d", *numbers))
+        return self._with_checksum(struct.pack(f"<{len(numbers)}d", *numbers))
 
-    def _sealed(self, body: bytes) -> bytes:
+    def _with_checksum(self, body: bytes) -> bytes:
         """Return a saved state: which model it is of, a checksum, and its numbers."""
         head = (STATE_MAGIC + self.fingerprint.encode()).ljust(STATE_HEAD - CHECKSUM, b"\0")
         return head + hashlib.sha256(head + body).digest()[:CHECKSUM] + body
 
-    def _is_state(self, state: Any) -> bool:
+    def _is_own_undamaged_state(self, state: Any) -> bool:
         """Return whether this FMU saved the state, and it is undamaged."""
         length = STATE_HEAD + 8 * (3 + len(self._memory))
         right = isinstance(state, bytes) and len(state) == length
-        return right and state == self._sealed(state[STATE_HEAD:])
+        return right and state == self._with_checksum(state[STATE_HEAD:])
 
     def _set_fmu_state(self, state: Any) -> None:
-        if not self._is_state(state):
+        if not self._is_own_undamaged_state(state):
             text = f"FMU state: expected a state saved by this FMU ({self.model.name}, "
             self.refuse(f"{text}{self.fingerprint}), and undamaged")
         numbers = struct.unpack(f"<{3 + len(self._memory)}d", state[STATE_HEAD:])
         memory = self._array(*numbers[3:])
-        problem = self._state_problem(numbers[:3], memory)
+        problem = self._saved_state_problem(numbers[:3], memory)
         if problem:
             self.refuse(f"FMU state: {problem}")
         self._phase, self._start_time = numbers[:2]
         self._stale = numbers[2] != 0.0 or self._phase < STEPPING  # or calculated once more
         self._memory = memory
 
-    def _state_problem(self, head: Sequence[float], memory: Any) -> str:
+    def _saved_state_problem(self, head: Sequence[float], memory: Any) -> str:
         """Say why a saved state is none that this FMU had; empty if it is no danger."""
         phase, start_time, stale = head
         if phase not in PHASES or stale not in (0.0, 1.0) or start_time - start_time != 0.0:
@@ -404,9 +405,9 @@ class Slave:
         problems = (state_problem(known, memory[known.slot]) for known in self.model.variables)
         problem = next(filter(None, problems), "")
         if phase >= STEPPING and not problem:
-            problem = hidden_problem(self.model, memory)
+            problem = hidden_slot_problem(self.model, memory)
             code = 0 if problem else self._entries["restore"](memory, start_time)
-            problem = explain(self.model, memory, code) if code else problem
+            problem = format_message(self.model, memory, code) if code else problem
         return problem and f"a saved state that this FMU never had: {problem}"
 
     # the bytes are looked at when they are set: an exception here would corrupt the instance

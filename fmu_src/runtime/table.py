@@ -44,7 +44,7 @@ class Variable:
     # which begins where one of them is set
     input_derivatives: int = 0
     series: str = ""  # the array that it is an element of, where FMI 3.0 has only the array
-    slot: int = -1  # in table and memory, and FMI's value reference, see `numbered`
+    slot: int = -1  # in table and memory, and FMI's value reference, see `with_slot_numbers`
 
     @property
     def calculated(self) -> bool:
@@ -54,7 +54,7 @@ class Variable:
     def fixed(self) -> bool:
         return self.variability == "fixed"
 
-    def text(self, value: float) -> str:
+    def format_value(self, value: float) -> str:
         """Return a value as people write it: Integers without a fraction, Booleans as words."""
         if self.type == BOOLEAN and value in (0.0, 1.0):
             return "true" if value else "false"
@@ -71,7 +71,7 @@ class Variable:
         if isfinite(value) and low and high:
             return ""
         unit = f" {self.unit}" if self.unit not in ("", "1") else ""
-        return f"{self.name} = {self.text(value)}{unit}: expected {self.range_text()}"
+        return f"{self.name} = {self.format_value(value)}{unit}: expected {self.range_text()}"
 
     def range_text(self) -> str:
         if self.type == BOOLEAN:
@@ -88,21 +88,23 @@ def parameter(name: str, unit: str, start: float, description: str, **more: Any)
     return Variable(name, description, "parameter", unit, start=start, **given)
 
 
-def positive(name: str, unit: str, start: float, description: str) -> Variable:
+def positive_parameter(name: str, unit: str, start: float, description: str) -> Variable:
     return parameter(name, unit, start, description, minimum=TINY, maximum=LARGE)
 
 
-def not_negative(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
+def non_negative_parameter(
+    name: str, unit: str, start: float, description: str, **more: Any
+) -> Variable:
     return parameter(name, unit, start, description, minimum=0.0, maximum=LARGE, **more)
 
 
-def start_value(
+def start_value_parameter(
     name: str, unit: str, description: str, limit: float = DRIVE_LIMIT, **more: Any
 ) -> Variable:
     return parameter(name, unit, 0.0, description, minimum=-limit, maximum=limit, **more)
 
 
-def evaluation_limit(function: str) -> Variable:
+def evaluation_limit_parameter(function: str) -> Variable:
     """Return the parameter that bounds a communication step by evaluations of a function."""
     return parameter(
         "evaluation_limit",
@@ -117,12 +119,12 @@ def evaluation_limit(function: str) -> Variable:
     )
 
 
-def drive(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
+def input_variable(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
     given = {"minimum": -HUGE, "maximum": HUGE, **more}
     return Variable(name, description, "input", unit, start=start, **given)
 
 
-def cubic(
+def cubic_input(
     name: str, unit: str, description: str, limit: float = HUGE, derivatives: Sequence[str] = ()
 ) -> tuple[Variable, ...]:
     """Return an input and its three time derivatives: together a polynomial in time."""
@@ -130,24 +132,24 @@ def cubic(
     more: dict[str, Any] = {"minimum": -limit, "maximum": limit}
     text = f"{description}: value when it was set; runs on as the cubic with "
     text += f"{names[0]}, {names[1]} and {names[2]}"
-    variables = [drive(name, unit, 0.0, text, input_derivatives=3, **more)]
+    variables = [input_variable(name, unit, 0.0, text, input_derivatives=3, **more)]
     base, per_second, power = unit.partition("/s")
     first = int(power or 1) if per_second else 0
     for i, (other, word) in enumerate(zip(names, ("First", "Second", "Third")), 1):
         own = f"{base}/s{first + i if first + i > 1 else ''}"
         text = f"{word} time derivative of {name} when one of the four was set"
-        variables.append(drive(other, own, 0.0, text, **more))
+        variables.append(input_variable(other, own, 0.0, text, **more))
     return tuple(variables)
 
 
-def output(
+def output_variable(
     name: str, unit: str, description: str, known: Iterable[str] = (), **more: Any
 ) -> Variable:
     given = {"initial": "calculated", "initial_dependencies": tuple(known), **more}
     return Variable(name, description, "output", unit, **given)
 
 
-def numbered(variables: Sequence[Variable], memory: ModuleType) -> tuple[Variable, ...]:
+def with_slot_numbers(variables: Sequence[Variable], memory: ModuleType) -> tuple[Variable, ...]:
     """Return the variables with their places as slots, which the memory has by their names."""
     for place, variable in enumerate(variables):
         name, _, element = variable.name.partition("[")
@@ -196,7 +198,7 @@ class SlotRange:
     lowest: float = inf
     highest: float = -inf
 
-    def has(self, value: float) -> bool:
+    def allows(self, value: float) -> bool:
         return self.lowest > self.highest or self.lowest <= value <= self.highest
 
 
@@ -215,7 +217,7 @@ class Model:
     limited: int  # code of `advance` where `evaluation_limit` is reached: discarded, no error
     time_slot: int  # of the communication point reached
     stop_slot: int  # of the flag that ends a step at its first event
-    set_slot: int  # of the first of the flags that tell of inputs set, see `set_flags`
+    set_slot: int  # of the first of the flags that tell of inputs set, see `set_flag_by_slot`
     initialize: Entry
     advance: Entry
     differentiate: Entry  # writes the outputs' rates of change, the inputs as they are
@@ -223,7 +225,7 @@ class Model:
     # of slots behind the variables: what indexes, counts or bounds a loop, or need not be finite
     ranges: tuple[SlotRange, ...]
     rates: Mapping[int, int]  # slots of rates by slots of outputs; those behind each follow alike
-    messages: Mapping[int, str]  # what a code says, as one line, see `explain`
+    messages: Mapping[int, str]  # what a code says, as one line, see `format_message`
     stop_time: float  # of the default experiment, s
     step_size: float
     arrays: tuple[Array, ...] = ()
@@ -242,7 +244,7 @@ class Model:
         return self.rates[first] + variable.slot - first
 
     @property
-    def set_flags(self) -> dict[int, int]:
+    def set_flag_by_slot(self) -> dict[int, int]:
         """Slots of the flags to raise where an input with derivatives, or one of these, is set."""
         values = [v for v in self.variables if v.input_derivatives]
         return {
@@ -252,7 +254,7 @@ class Model:
         }
 
     @property
-    def entries(self) -> dict[str, Entry]:
+    def entry_points(self) -> dict[str, Entry]:
         """The kernel's entry points by name, in the order in which compiled forms give them."""
         given = {
             "initialize": self.initialize,
@@ -265,26 +267,26 @@ class Model:
         return {name: function for name, function in given.items() if function is not None}
 
 
-def hidden_problem(model: Model, memory: Sequence[float]) -> str:
+def hidden_slot_problem(model: Model, memory: Sequence[float]) -> str:
     """Say which slot behind the variables cannot have its value; empty if all can."""
     ranges = {slot: row for row in model.ranges for slot in range(row.first, row.first + row.size)}
     for slot in range(len(model.variables), model.memory_size):
         value = float(memory[slot])
-        if not (ranges[slot].has(value) if slot in ranges else isfinite(value)):
+        if not (ranges[slot].allows(value) if slot in ranges else isfinite(value)):
             return f"{value!r} in slot {slot}"
     return ""
 
 
-def with_slots(messages: Mapping[int, str], memory: ModuleType) -> dict[int, str]:
+def messages_with_slot_numbers(messages: Mapping[int, str], memory: ModuleType) -> dict[int, str]:
     """Return messages with slots in place of their names: ``{E}`` is ``{6}``."""
 
-    def slot(match: re.Match[str]) -> str:
+    def slot_number(match: re.Match[str]) -> str:
         return f"{{{getattr(memory, match.group(1))}"
 
-    return {code: re.sub(r"\{([A-Z]\w*)", slot, text) for code, text in messages.items()}
+    return {code: re.sub(r"\{([A-Z]\w*)", slot_number, text) for code, text in messages.items()}
 
 
-def explain(model: Model, memory: Sequence[float], code: int) -> str:
+def format_message(model: Model, memory: Sequence[float], code: int) -> str:
     """Return what a return code of the kernel means, as one line.
 
     In a message ``{12}`` stands for the value in slot 12, ``{12:0}`` for the whole number next to
@@ -292,7 +294,7 @@ def explain(model: Model, memory: Sequence[float], code: int) -> str:
     texts.
     """
 
-    def fill(match: re.Match[str]) -> str:
+    def format_slot(match: re.Match[str]) -> str:
         slot, how = int(match.group(1)), match.group(2)
         value = float(memory[slot])
         if how == ":0":
@@ -300,6 +302,6 @@ def explain(model: Model, memory: Sequence[float], code: int) -> str:
         if how:
             return str(how[1:].split("|")[int(value)])
         known = slot < len(model.variables)
-        return model.variables[slot].text(value) if known else repr(value)
+        return model.variables[slot].format_value(value) if known else repr(value)
 
-    return re.sub(r"\{(\d+)(:[^}]*)?\}", fill, model.messages[code])
+    return re.sub(r"\{(\d+)(:[^}]*)?\}", format_slot, model.messages[code])

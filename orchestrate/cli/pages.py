@@ -43,7 +43,14 @@ class Build(Command):
   {program} build --folder /tmp/fmus --platforms all"""
 
     def __call__(self) -> None:
-        from ..fmu import FORMS, PLAIN_FORMS, build, build_libraries, build_web_kernels, sources_of
+        from ..fmu import (
+            FORMS,
+            PLAIN_FORMS,
+            build,
+            build_libraries,
+            build_web_kernels,
+            source_forms_of,
+        )
 
         if self.folder is not None:
             check_output_folder(self.folder, "--folder")
@@ -52,7 +59,7 @@ class Build(Command):
         if self.sources_only:
             if platforms:
                 raise InputError("--platforms with --sources-only: expected one of them")
-            forms = sources_of(forms)
+            forms = source_forms_of(forms)
         made = build(self.folder, forms, platforms=platforms)
         if not (self.plain or self.sources_only):
             made += build_libraries(self.folder, platforms)

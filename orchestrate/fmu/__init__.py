@@ -32,7 +32,7 @@ from .exported import (
     find_or_export,
     is_current_and_trusted,
     make_fmu_finder,
-    sources_of,
+    source_forms_of,
 )
 from .impacts import STATE, Impacts
 from .instance import Instance, function_addresses
@@ -82,6 +82,6 @@ __all__ = [
     "sample_evenly",
     "sample_stroboscopically",
     "traits_for_loops",
-    "sources_of",
+    "source_forms_of",
     "is_current_and_trusted",
 ]

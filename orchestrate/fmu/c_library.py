@@ -16,7 +16,7 @@ from typing import Any
 
 from fmu_src.export import c_library as sources
 from fmu_src.export.errors import CannotExport
-from fmu_src.export.platforms import chosen, this_machine, usual
+from fmu_src.export.platforms import default_platforms, platform_of_this_machine, select_platforms
 
 from ..errors import InputError, StoreError
 from ..files import (
@@ -35,18 +35,18 @@ SOURCES = tuple(sorted(sources.LOOPS.glob("*.c")))
 
 def find_or_compile_library(source: Path, folder: str | PathLike[str] | None = None) -> Path:
     """Return the path of a C source's shared library, compiled if missing or out of date."""
-    platform = this_machine()
+    platform = platform_of_this_machine()
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     token = sources.guid(source)
     try:
-        name = sources.file_name(source, platform)
+        name = sources.library_name(source, platform)
         paths = [candidate / FORM / name for candidate in folders]
         for path in paths:
-            if is_trusted(path) and sources.is_current(path, token):
+            if is_trusted(path) and sources.is_current_and_undamaged(path, token):
                 return path
         path = paths[0]
         with creation_lock(path):
-            if not (is_trusted(path) and sources.is_current(path, token)):
+            if not (is_trusted(path) and sources.is_current_and_undamaged(path, token)):
                 compile_library(source, platform, folders[0])
         if is_trusted(path):
             return path
@@ -81,7 +81,7 @@ def is_trusted(path: Path) -> bool:
 
 def paths_to_protect(path: Path) -> tuple[Path, ...]:
     """Return what decides on what is loaded: a library, its digest, and their own folders."""
-    return path, sources.digest_file(path), path.parent, path.parent.parent
+    return path, sources.digest_path(path), path.parent, path.parent.parent
 
 
 def build_libraries(
@@ -91,11 +91,11 @@ def build_libraries(
     target, made = default_folder() if folder is None else Path(folder), []
     left: dict[str, list[str]] = {}  # names by the reason
     for source in SOURCES:
-        for platform in chosen(platforms) or usual():
+        for platform in select_platforms(platforms) or default_platforms():
             try:
                 made.append(compile_library(source, platform, target))
             except CannotExport as reason:
-                left.setdefault(str(reason), []).append(sources.file_name(source, platform))
+                left.setdefault(str(reason), []).append(sources.library_name(source, platform))
     for text, names in left.items():
         log.warning("left out: %s: %s", ", ".join(names), text)
     return made
@@ -103,13 +103,13 @@ def build_libraries(
 
 def compile_library(source: Path, platform: str, folder: Path) -> Path:
     """Compile a C source; write the library and its digest, which only the user can write."""
-    path = folder / FORM / sources.file_name(source, platform)
+    path = folder / FORM / sources.library_name(source, platform)
     log.info("compiling %s", path)
-    library = sources.export(source, platform)
+    library = sources.compile_loop(source, platform)
     make_writable_folder(path.parent)
     write_atomically(path, lambda target: target.write_bytes(library))
-    digest = sources.digest(library).encode()
-    write_atomically(sources.digest_file(path), lambda target: target.write_bytes(digest))
+    digest = sources.library_digest(library).encode()
+    write_atomically(sources.digest_path(path), lambda target: target.write_bytes(digest))
     for part in paths_to_protect(path):
         forbid_writing_by_others(part)
     return path

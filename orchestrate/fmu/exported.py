@@ -28,7 +28,7 @@ log = logging.getLogger(__name__)
 
 FORMS: tuple[str, ...] = sources.FORMS
 PLAIN_FORMS: tuple[str, ...] = sources.PLAIN_FORMS
-sources_of = sources.sources_of
+source_forms_of = sources.source_forms_of
 MODELS: tuple[str, ...] = tuple(sources.MODELS)
 WITHOUT_COMPILER = sources.PYTHON_FORM
 SHIPPED = Path(__file__).parent / "fmus"
@@ -49,7 +49,7 @@ def build(
     forms = tuple(forms)
     pairs = [(form, name) for name in names for form in forms]
     try:
-        chosen = sources.chosen(platforms)
+        chosen = sources.select_platforms(platforms)
     except CannotExport as reason:
         raise InputError(str(reason)) from None
     return export_all(pairs, default_folder() if folder is None else Path(folder), chosen)

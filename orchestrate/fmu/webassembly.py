@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from fmu_src.export import webassembly as sources
-from fmu_src.export.archive import fingerprint
+from fmu_src.export.archive import content_hash
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import MODELS
 from fmu_src.export.sources import load_model, model_sources
@@ -46,7 +46,7 @@ def find_or_compile_web_kernel(folder: str | PathLike[str] | None = None) -> Web
     """Return the models and loops as WebAssembly; compile them unless the present are there."""
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     guid = sources.guid()
-    variables = {name: sources.references(name) for name in sources.MODELS}
+    variables = {name: sources.value_references(name) for name in sources.MODELS}
     for path in (base / FILE for base in folders):
         module = read_current_module(path, guid)
         if module:
@@ -141,14 +141,14 @@ def nonzero_numbers(structure: ctypes.Structure) -> dict[str, float]:
 def kernel_digest(model: str) -> str:
     """Return a digest of the kernel sources that a model is made of."""
     files = model_sources(MODELS[model])
-    return fingerprint({name: files[name] for name in files if name.startswith("kernels/")})
+    return content_hash({name: files[name] for name in files if name.startswith("kernels/")})
 
 
 def compile_module(folder: Path) -> Path:
     """Compile the WebAssembly module from the present sources; return its file."""
     path = folder / FILE
     log.info("compiling %s", path)
-    module = sources.export()
+    module = sources.compile_module()
     make_writable_folder(path.parent)
     write_atomically(path, lambda target: target.write_bytes(module))
     return path

@@ -9,7 +9,7 @@ import pytest
 
 from fmu_src.export import forms
 from fmu_src.export.sources import load_model
-from fmu_src.runtime.table import BOOLEAN, INTEGER, explain
+from fmu_src.runtime.table import BOOLEAN, INTEGER, format_message
 from orchestrate.fmu import MODELS, find_or_export
 from tests import importers
 
@@ -76,13 +76,13 @@ def run_declared(kernel, rng, codes):
     for _ in range(0 if code else 4):
         for variable in rng.sample([v for v in settable if not v.fixed and v is not limit], 2):
             memory[variable.slot] = draw_declared(rng, variable)
-            if variable.slot in kernel.set_flags and rng.random() < 0.5:
-                memory[kernel.set_flags[variable.slot]] = 1.0
+            if variable.slot in kernel.set_flag_by_slot and rng.random() < 0.5:
+                memory[kernel.set_flag_by_slot[variable.slot]] = 1.0
         before = list(memory)
         size = 10.0 ** rng.choice((rng.uniform(-2.0, 2.0), rng.uniform(-300.0, 300.0)))
         code = kernel.advance(memory, before[kernel.time_slot] + size)
         codes[code] += 1
-        assert not code or explain(kernel, memory, code)
+        assert not code or format_message(kernel, memory, code)
         memory = before if code else memory
         wrong = [v.name for v in kernel.variables if not math.isfinite(memory[v.slot])]
         assert not wrong, wrong

@@ -93,7 +93,7 @@ def test_sources_edited_during_an_export_are_named(monkeypatch, tmp_path):
         monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + b"#" * (path == place))
         return {}
 
-    monkeypatch.setattr(pythonfmu_form, "libraries", edited_meanwhile)
+    monkeypatch.setattr(pythonfmu_form, "compile_libraries", edited_meanwhile)
     with pytest.raises(CannotExport, match=f"^{place} was edited .*: expected a new process$"):
         forms.export("TwoMassImpactOscillator", "fmi2-python", tmp_path)
     assert not list(tmp_path.rglob("*.fmu"))

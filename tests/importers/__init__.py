@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from fmu_src.export import forms, native_form, sources
-from fmu_src.export.compiler import compile_object, kernel_object
+from fmu_src.export.compiler import compile_kernel, compile_object
 from fmu_src.export.model_header import model_header
-from fmu_src.export.platforms import this_machine
-from fmu_src.export.source_code import kernel_source
+from fmu_src.export.platforms import platform_of_this_machine
+from fmu_src.export.source_code import kernel_c_source
 from orchestrate.fmu import describe
 
 HERE = Path(__file__).parent
@@ -30,7 +30,7 @@ SANITIZE = (
 WARNINGS = ("-std=gnu11", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function")
 
 
-def own_compiler() -> list[str] | None:
+def own_compiler_command() -> list[str] | None:
     """Return the command of the machine's C compiler; None without one."""
     own = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
     return [own] if own else None
@@ -44,7 +44,7 @@ def zig_compiler(target: str = "native") -> list[str] | None:
 
 def c_compiler() -> list[str] | None:
     """Return the command of any C compiler for this machine; None without one."""
-    return own_compiler() or zig_compiler()
+    return own_compiler_command() or zig_compiler()
 
 
 def run_compiler(command: Sequence[object], folder: Path) -> None:
@@ -199,12 +199,12 @@ def kernel_objects(model: str, sanitizer: Sequence[str] = ()) -> dict[str, bytes
 
     With a sanitizer by the machine's own compiler.
     """
-    source = kernel_source(forms.MODELS[model])
+    source = kernel_c_source(forms.MODELS[model])
     if not sanitizer:
-        return {this_machine(): kernel_object(this_machine(), source)}
+        return {platform_of_this_machine(): compile_kernel(platform_of_this_machine(), source)}
     fixed = ("-c", "-fPIC", "-g", "-O2", "-ffp-contract=off", "-DINLINE=inline")
     command = (*(c_compiler() or ["cc"]), *fixed, *sanitizer, "kernel.c", "-o", "kernel.o")
-    return {this_machine(): compile_object(command, source, "kernel with a sanitizer")}
+    return {platform_of_this_machine(): compile_object(command, source, "kernel with a sanitizer")}
 
 
 def importer_with_sanitizer(

@@ -17,7 +17,7 @@ from fmu_src.kernels.oscillator import memory as oscillator
 from fmu_src.models.electrodynamic_shaker.model import MODEL as COIL
 from fmu_src.models.motor_shaker.model import MODEL as MOTOR
 from fmu_src.models.oscillator.model import MODEL as OSCILLATOR
-from fmu_src.runtime.table import hidden_problem
+from fmu_src.runtime.table import hidden_slot_problem
 
 from ..sparing import ordinary
 
@@ -75,7 +75,7 @@ def forge(draw, model, m):
 
 def run_on(draw, model, m):
     """Restore and go on, inputs set or not; whether it was taken."""
-    if hidden_problem(model, m) or model.restore(m, 0.0):
+    if hidden_slot_problem(model, m) or model.restore(m, 0.0):
         return False
     slots = {variable.name: variable.slot for variable in model.variables}
     m[slots["evaluation_limit"]] = LIMIT
@@ -110,15 +110,15 @@ def test_a_forged_memory_harms_nothing(kind, seed):
 def test_no_loop_and_no_index_is_bounded_by_a_number_out_of_its_range(kind):
     for model, values in RUNS[kind]:
         (m,) = saved(model, values, [0.3])
-        assert hidden_problem(model, m) == "" and model.restore(m, 0.0) == 0
+        assert hidden_slot_problem(model, m) == "" and model.restore(m, 0.0) == 0
         for row in model.ranges:
             if row.lowest > row.highest:
                 continue
             for value in (row.lowest - 1.0, row.highest + 1.0, math.nan):
                 other = list(m)
                 other[row.first] = value
-                refused = hidden_problem(model, other)
-                assert bool(refused) != row.has(value)
+                refused = hidden_slot_problem(model, other)
+                assert bool(refused) != row.allows(value)
                 assert not refused or f"slot {row.first}" in refused
 
 
@@ -129,7 +129,7 @@ def test_what_is_derived_is_not_read(kind):
     spoilt = list(m)
     for slot in DERIVED[kind]:
         spoilt[slot] = 1.5 * m[slot] + 1.0
-        if hidden_problem(model, spoilt):  # of a fixed range
+        if hidden_slot_problem(model, spoilt):  # of a fixed range
             spoilt[slot] = m[slot]
     assert sum(map(operator.ne, m, spoilt)) > 0.7 * len(DERIVED[kind])
     assert model.restore(spoilt, 0.0) == 0

@@ -11,7 +11,7 @@ from importlib.util import find_spec
 import pytest
 
 from fmu_src.export import compiler
-from fmu_src.export.compiler import kernel_object
+from fmu_src.export.compiler import compile_kernel
 from fmu_src.export.errors import CannotExport
 from tests import importers
 
@@ -95,7 +95,7 @@ def test_the_binary_has_no_instruction_beyond_the_baseline(fmus, tmp_path):
 
 def test_the_compiler_s_first_error_is_one_line():
     with pytest.raises(CannotExport, match="the C compiler failed for") as e:
-        kernel_object("x86_64-linux", b"int kernel_advance(void) { return nothing; }")
+        compile_kernel("x86_64-linux", b"int kernel_advance(void) { return nothing; }")
     assert "\n" not in str(e.value)
 
 
@@ -106,5 +106,5 @@ def test_windows_libraries_need_no_c_library_compiled_first(tmp_path):
         b'__declspec(dllexport) int print(char *t, double x) { return snprintf(t, 32, "%g", x); }'
     )
     files = {"one.c": b"#include <stdio.h>\n" + body}
-    (tmp_path / "one.dll").write_bytes(compiler.link("x86_64-windows", "one", files))
+    (tmp_path / "one.dll").write_bytes(compiler.compile_and_link("x86_64-windows", "one", files))
     assert set(Pe(tmp_path / "one.dll").imports) == {"api-ms-win-crt-stdio-l1-1-0.dll"}

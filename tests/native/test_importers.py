@@ -69,7 +69,7 @@ def test_a_thousand_instances_and_four_threads(importer):
 @pytest.fixture(scope="module", params=ordinary(PAIRS, PAIRS[3:4]), ids="-".join)
 def importer_of_model(request, exported, fmus, tmp_path_factory):
     version, model = request.param
-    if importers.own_compiler() is None:
+    if importers.own_compiler_command() is None:
         pytest.skip("there is no C compiler")
     path = exported / version / f"{model}.fmu"
     return importers.importer(version, path, tmp_path_factory.mktemp("model"))
@@ -108,10 +108,10 @@ def test_no_leak_and_no_error_under_valgrind_at_length(importer_of_model):
 def test_no_error_with_sanitizers_in_the_shim(exported, fmus, tmp_path, pair, sanitizer):
     """Address, undefined behaviour and leaks; or threads."""
     options = SANITIZERS[sanitizer]
-    if importers.own_compiler() is None:
+    if importers.own_compiler_command() is None:
         pytest.skip("no C compiler of the machine's own: ziglang's sanitizers load from no library")
     (tmp_path / "empty.c").write_text("int main(void) { return 0; }\n")
-    command = [*importers.own_compiler(), *options, "empty.c", "-o", "empty"]
+    command = [*importers.own_compiler_command(), *options, "empty.c", "-o", "empty"]
     if subprocess.run([*map(str, command)], cwd=tmp_path, capture_output=True).returncode:
         pytest.skip("the compiler has no such sanitizer")
     importer = importers.importer_with_sanitizer(*pair, exported, tmp_path, options)

@@ -4,7 +4,7 @@ import pytest
 from fmpy.validation import validate_fmu
 
 from fmu_src.export import forms
-from fmu_src.export.platforms import this_machine
+from fmu_src.export.platforms import platform_of_this_machine
 from orchestrate.errors import InputError
 from orchestrate.fmu import Instance
 from orchestrate.response.response_loop import response_loop
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.slow  # compiles; sources of a plain form run in test_s
 def plain(version, tmp_path):
     """The oscillator's plain FMU of an FMI version."""
     form = f"{version}-plain"
-    return forms.export("TwoMassImpactOscillator", form, tmp_path, (this_machine(),))
+    return forms.export("TwoMassImpactOscillator", form, tmp_path, (platform_of_this_machine(),))
 
 
 def test_an_importer_that_knows_real_alone_runs_a_plain_form(plain, fmus, version):

@@ -108,9 +108,9 @@ def test_the_description_names_the_sources(fmus):
 def without_binaries(tmp_path_factory):
     """The FMUs for targets that compile, by form, made where there is no compiler."""
     build = tmp_path_factory.mktemp("sources")
-    wanted = forms.sources_of(forms.FORMS + forms.PLAIN_FORMS)
+    wanted = forms.source_forms_of(forms.FORMS + forms.PLAIN_FORMS)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiler, "run", None)
+        patch.setattr(compiler, "run_compiler", None)
         return {form: forms.export("TwoMassImpactOscillator", form, build) for form in wanted}
 
 

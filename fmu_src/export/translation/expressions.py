@@ -13,7 +13,7 @@ from types import FunctionType, ModuleType
 from typing import Any, Protocol
 
 from ..errors import CannotExport
-from .subset import origin, resolve_name, writes_memory
+from .subset import original_definition, resolve_name, writes_memory
 from .values import (
     AND,
     ATOM,
@@ -74,13 +74,13 @@ class Kernel(Protocol):
 
     begun: set[FunctionType]
 
-    def constant(self, module: ModuleType, name: str) -> str:
+    def constant_name(self, module: ModuleType, name: str) -> str:
         """Return the name in C of a module's number."""
 
-    def c_type(self, kind: Type) -> str:
+    def c_type_name(self, kind: Type) -> str:
         """Return the name in C of a type."""
 
-    def unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
+    def translated_unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
         """Return another function, translated."""
 
 
@@ -100,106 +100,108 @@ class Expressions(ABC):
     count_of_kept: int
 
     @abstractmethod
-    def line(self, text: str) -> None:
+    def write_line(self, text: str) -> None:
         """Write one line of C before the present statement."""
 
-    def refuse(self, node: ast.AST, what: str, expected: str) -> CannotExport:
+    def refusal(self, node: ast.AST, found: str, expected: str) -> CannotExport:
         line = self.first + getattr(node, "lineno", 1) - 1
-        return CannotExport(f"{self.module.__file__}, line {line}: {what}; expected {expected}")
+        return CannotExport(f"{self.module.__file__}, line {line}: {found}; expected {expected}")
 
-    def keep(self, value: Value) -> Value:
+    def keep_in_variable(self, value: Value) -> Value:
         if not self.may_keep:
             instead = "it in a statement of its own before"
-            raise self.refuse(self.tree, f"{value.text} would be evaluated too early", instead)
+            raise self.refusal(self.tree, f"{value.text} would be evaluated too early", instead)
         self.count_of_kept += 1
         name = f"part_{self.count_of_kept}"
-        self.line(f"{self.kernel.c_type(value.type)} {name} = {value.text};")
+        self.write_line(f"{self.kernel.c_type_name(value.type)} {name} = {value.text};")
         return Value(name, value.type)
 
-    def function(
+    def translated_function(
         self, node: ast.AST, function: FunctionType, kinds: tuple[Type, ...]
     ) -> tuple[str, Type]:
         if function in self.kernel.begun:  # nobody could say how much stack it takes
-            raise self.refuse(node, f"{function.__name__} calls itself", "a loop, no recursion")
-        unit = self.kernel.unit(function, kinds)
+            raise self.refusal(node, f"{function.__name__} calls itself", "a loop, no recursion")
+        unit = self.kernel.translated_unit(function, kinds)
         if not self.is_rare:
             self.unit.often.add(unit.name)
         return unit.name, unit.result
 
-    def expression(self, node: ast.expr) -> Value:
+    def translate_expression(self, node: ast.expr) -> Value:
         known: Mapping[type, Callable[[Any], Value]] = {
-            ast.Constant: self.literal,
-            ast.Name: self.read,
-            ast.Attribute: self.read,
-            ast.Subscript: self.subscript,
-            ast.BinOp: self.operation,
-            ast.UnaryOp: self.unary,
-            ast.BoolOp: self.boolean_operation,
-            ast.Compare: self.comparison,
-            ast.IfExp: self.conditional_expression,
-            ast.Call: self.call,
-            ast.Tuple: lambda node: self.grouped(self.operands(node.elts)),
+            ast.Constant: self.translate_literal,
+            ast.Name: self.translate_name,
+            ast.Attribute: self.translate_name,
+            ast.Subscript: self.translate_subscript,
+            ast.BinOp: self.translate_operation,
+            ast.UnaryOp: self.translate_unary,
+            ast.BoolOp: self.translate_boolean_operation,
+            ast.Compare: self.translate_comparison,
+            ast.IfExp: self.translate_conditional_expression,
+            ast.Call: self.translate_call,
+            ast.Tuple: lambda node: self.make_tuple(self.translate_in_order(node.elts)),
         }
         if type(node) not in known:
-            raise self.refuse(node, ast.unparse(node), "numbers, slots, + - * / and calls")
+            raise self.refusal(node, ast.unparse(node), "numbers, slots, + - * / and calls")
         return known[type(node)](node)
 
     # -- what is read --
 
-    def literal(self, node: ast.Constant) -> Value:
+    def translate_literal(self, node: ast.Constant) -> Value:
         if isinstance(node.value, bool):
             return Value(str(int(node.value)), TRUTH)
         if isinstance(node.value, (int, float)):
             return Value(repr(node.value), WHOLE if isinstance(node.value, int) else REAL)
-        raise self.refuse(node, repr(node.value), "a number")
+        raise self.refusal(node, repr(node.value), "a number")
 
-    def read(self, node: ast.Name | ast.Attribute) -> Value:
+    def translate_name(self, node: ast.Name | ast.Attribute) -> Value:
         if isinstance(node, ast.Name) and node.id in self.types:
-            return Value(in_c(node.id), self.types[node.id])
-        thing, module, name = self.resolved(node)
+            return Value(c_name(node.id), self.types[node.id])
+        thing, module, name = self.resolve(node)
         if isinstance(thing, bool) or not isinstance(thing, (int, float)):
-            raise self.refuse(node, ast.unparse(node), "a number")
-        return Value(self.kernel.constant(module, name), WHOLE if isinstance(thing, int) else REAL)
+            raise self.refusal(node, ast.unparse(node), "a number")
+        return Value(
+            self.kernel.constant_name(module, name), WHOLE if isinstance(thing, int) else REAL
+        )
 
-    def resolved(self, node: ast.expr) -> tuple[object, ModuleType, str]:
+    def resolve(self, node: ast.expr) -> tuple[object, ModuleType, str]:
         name = ast.unparse(node)
         thing = resolve_name(self.module, name)
         if thing is None:
-            raise self.refuse(node, f"{name} is not known here", "a variable or a constant")
+            raise self.refusal(node, f"{name} is not known here", "a variable or a constant")
         if isinstance(node, ast.Attribute):
             module = resolve_name(self.module, ast.unparse(node.value))
             assert isinstance(module, ModuleType)
-            return thing, *origin(module, node.attr)
-        return thing, *origin(self.module, name)
+            return thing, *original_definition(module, node.attr)
+        return thing, *original_definition(self.module, name)
 
-    def subscript(self, node: ast.Subscript) -> Value:
-        if self.is_table(node.value):
-            numbers, module, name = self.resolved(node.value)
+    def translate_subscript(self, node: ast.Subscript) -> Value:
+        if self.is_constant_table(node.value):
+            numbers, module, name = self.resolve(node.value)
             assert isinstance(numbers, tuple)
-            place = self.expression(node.slice)
+            place = self.translate_expression(node.slice)
             if place.type != WHOLE:
-                raise self.refuse(node, ast.unparse(node), "a whole number as the index")
+                raise self.refusal(node, ast.unparse(node), "a whole number as the index")
             kind = WHOLE if all(isinstance(n, int) for n in numbers) else REAL
-            return Value(f"{self.kernel.constant(module, name)}[{place.text}]", kind)
-        whole = self.expression(node.value)
+            return Value(f"{self.kernel.constant_name(module, name)}[{place.text}]", kind)
+        whole = self.translate_expression(node.value)
         if whole.type == MEMORY:
-            place = self.expression(node.slice)
+            place = self.translate_expression(node.slice)
             if place.type != WHOLE:
-                raise self.refuse(node, ast.unparse(node), "a whole number as the slot")
+                raise self.refusal(node, ast.unparse(node), "a whole number as the slot")
             return Value(f"{whole.text}[{place.text}]", REAL)
         if not isinstance(whole.type, tuple):
-            raise self.refuse(node, ast.unparse(node), "a slot or a part of a tuple")
+            raise self.refusal(node, ast.unparse(node), "a slot or a part of a tuple")
         if isinstance(node.slice, ast.Slice):
-            simple = whole if is_simple(whole) else self.keep(whole)
+            simple = whole if is_simple_name(whole) else self.keep_in_variable(whole)
             ends = [getattr(node.slice, end) for end in ("lower", "upper", "step")]
             wanted = slice(*(end and ast.literal_eval(end) for end in ends))
-            return self.grouped(simple.items()[wanted])
+            return self.make_tuple(simple.items()[wanted])
         index = node.slice.value if isinstance(node.slice, ast.Constant) else None
         if not isinstance(index, int):
-            raise self.refuse(node, ast.unparse(node), "a constant index of a tuple")
+            raise self.refusal(node, ast.unparse(node), "a constant index of a tuple")
         return whole.item(index)
 
-    def is_table(self, node: ast.expr) -> bool:
+    def is_constant_table(self, node: ast.expr) -> bool:
         if not isinstance(node, (ast.Name, ast.Attribute)) or ast.unparse(node) in self.types:
             return False
         thing = resolve_name(self.module, ast.unparse(node))
@@ -207,63 +209,74 @@ class Expressions(ABC):
 
     # -- what is computed --
 
-    def operation(self, node: ast.BinOp) -> Value:
+    def translate_operation(self, node: ast.BinOp) -> Value:
         if type(node.op) not in OPERATORS:
-            raise self.refuse(node, ast.unparse(node), "one of + - * / % &")
+            raise self.refusal(node, ast.unparse(node), "one of + - * / % &")
         sign, rank = OPERATORS[type(node.op)]
-        one, other = self.operands([node.left, node.right])
+        one, other = self.translate_in_order([node.left, node.right])
         kind = common_type([one.type, other.type, WHOLE])
         if sign in "%&" and kind == REAL:
-            raise self.refuse(node, ast.unparse(node), "whole numbers")
+            raise self.refusal(node, ast.unparse(node), "whole numbers")
         if sign == "/" and kind != REAL:  # Python's division of whole numbers is a real number
-            one, kind = Value(f"(double){one.within(UNARY)}", REAL, UNARY), REAL
-        one, other = one.converted(kind), other.converted(kind)
-        return Value(f"{one.within(rank)} {sign} {other.within(rank + 1)}", kind, rank)
+            one, kind = Value(f"(double){one.text_within(UNARY)}", REAL, UNARY), REAL
+        one, other = one.converted_to(kind), other.converted_to(kind)
+        return Value(f"{one.text_within(rank)} {sign} {other.text_within(rank + 1)}", kind, rank)
 
-    def unary(self, node: ast.UnaryOp) -> Value:
+    def translate_unary(self, node: ast.UnaryOp) -> Value:
         if isinstance(node.op, ast.Not):
-            return Value(f"!{self.truth(node.operand).within(UNARY)}", TRUTH, UNARY)
+            return Value(f"!{self.translate_test(node.operand).text_within(UNARY)}", TRUTH, UNARY)
         if not isinstance(node.op, ast.USub):
-            raise self.refuse(node, ast.unparse(node), "- or not")
-        value = self.expression(node.operand)
-        text = value.within(UNARY)
+            raise self.refusal(node, ast.unparse(node), "- or not")
+        value = self.translate_expression(node.operand)
+        text = value.text_within(UNARY)
         return Value(f"-({text})" if text.startswith("-") else f"-{text}", value.type, UNARY)
 
-    def truth(self, node: ast.expr) -> Value:
-        value = self.expression(node)
+    def translate_test(self, node: ast.expr) -> Value:
+        value = self.translate_expression(node)
         if value.type != TRUTH:
-            raise self.refuse(node, ast.unparse(node), "a comparison")
+            raise self.refusal(node, ast.unparse(node), "a comparison")
         return value
 
-    def boolean_operation(self, node: ast.BoolOp) -> Value:
+    def translate_boolean_operation(self, node: ast.BoolOp) -> Value:
         sign, rank = ("&&", AND) if isinstance(node.op, ast.And) else ("||", OR)
         first, *others = node.values
-        values = [self.truth(first), *self.conditional(others, self.truth)]
+        values = [
+            self.translate_test(first),
+            *self.translate_without_variables(others, self.translate_test),
+        ]
         # C's compilers ask for parentheses around && within ||
-        return Value(f" {sign} ".join(value.within(BITS) for value in values), TRUTH, rank)
+        return Value(f" {sign} ".join(value.text_within(BITS) for value in values), TRUTH, rank)
 
-    def comparison(self, node: ast.Compare) -> Value:
-        first, *others = self.operands([node.left, *node.comparators])
-        middle = [v if is_simple(v) or "(" not in v.text else self.keep(v) for v in others[:-1]]
+    def translate_comparison(self, node: ast.Compare) -> Value:
+        first, *others = self.translate_in_order([node.left, *node.comparators])
+        middle = [
+            v if is_simple_name(v) or "(" not in v.text else self.keep_in_variable(v)
+            for v in others[:-1]
+        ]
         values = [first, *middle, others[-1]]
         pairs = []
         for operator, one, other in zip(node.ops, values[:-1], values[1:], strict=True):
             sign, rank = COMPARISONS[type(operator)]
             kind = common_type([one.type, other.type])
-            left, right = (value.converted(kind).within(rank + 1) for value in (one, other))
+            left, right = (value.converted_to(kind).text_within(rank + 1) for value in (one, other))
             pairs.append(Value(f"{left} {sign} {right}", TRUTH, rank))
         if len(pairs) == 1:
             return pairs[0]
         return Value(" && ".join(pair.text for pair in pairs), TRUTH, AND)
 
-    def conditional_expression(self, node: ast.IfExp) -> Value:
-        test = self.truth(node.test)
-        one, other = self.conditional([node.body, node.orelse], self.expression)
+    def translate_conditional_expression(self, node: ast.IfExp) -> Value:
+        test = self.translate_test(node.test)
+        one, other = self.translate_without_variables(
+            [node.body, node.orelse], self.translate_expression
+        )
         kind = common_type([one.type, other.type])
-        parts = (one.converted(kind).within(OR), other.converted(kind).within(CHOICE))
-        return Value(f"{test.within(OR)} ? {parts[0]} : {parts[1]}", kind, CHOICE)
+        parts = (
+            one.converted_to(kind).text_within(OR),
+            other.converted_to(kind).text_within(CHOICE),
+        )
+        return Value(f"{test.text_within(OR)} ? {parts[0]} : {parts[1]}", kind, CHOICE)
 
-    def conditional(
+    def translate_without_variables(
         self, nodes: Sequence[ast.expr], read: Callable[[ast.expr], Value]
     ) -> list[Value]:
         """Translate what is evaluated only where a test says so: nothing may be kept before."""
@@ -272,57 +285,57 @@ class Expressions(ABC):
         self.may_keep = before
         return values
 
-    def grouped(self, parts: Sequence[Value]) -> Value:
+    def make_tuple(self, parts: Sequence[Value]) -> Value:
         kind = tuple(part.type for part in parts)
         return Value(
-            f"({self.kernel.c_type(kind)}){{{', '.join(part.text for part in parts)}}}", kind
+            f"({self.kernel.c_type_name(kind)}){{{', '.join(part.text for part in parts)}}}", kind
         )
 
-    def call(self, node: ast.Call) -> Value:
+    def translate_call(self, node: ast.Call) -> Value:
         name = ast.unparse(node.func)
         if node.keywords:
-            raise self.refuse(node, ast.unparse(node), "arguments without names")
+            raise self.refusal(node, ast.unparse(node), "arguments without names")
         if name in BUILT_IN:
-            return self.built_in(node, name)
-        thing, _, _ = self.resolved(node.func)
+            return self.translate_built_in(node, name)
+        thing, _, _ = self.resolve(node.func)
         if not isinstance(thing, FunctionType):
-            raise self.refuse(node, name, f"a function of the kernel, or {', '.join(BUILT_IN)}")
-        values = self.operands(node.args)
-        known, result = self.function(node, thing, tuple(value.type for value in values))
+            raise self.refusal(node, name, f"a function of the kernel, or {', '.join(BUILT_IN)}")
+        values = self.translate_in_order(node.args)
+        known, result = self.translated_function(node, thing, tuple(value.type for value in values))
         return Value(f"{known}({', '.join(value.text for value in values)})", result)
 
-    def built_in(self, node: ast.Call, name: str) -> Value:
+    def translate_built_in(self, node: ast.Call, name: str) -> Value:
         """Translate a call of a function that every C has, or of a helper of the C file."""
-        values = self.operands(node.args)
+        values = self.translate_in_order(node.args)
         kind = common_type([value.type for value in values])
         if name == "int":
-            return Value(f"(int){values[0].within(UNARY)}", WHOLE, UNARY)
+            return Value(f"(int){values[0].text_within(UNARY)}", WHOLE, UNARY)
         if name in ("max", "min", "abs") and kind != REAL:
-            raise self.refuse(node, ast.unparse(node), "real numbers")
-        text = values[0].converted(REAL).text
+            raise self.refusal(node, ast.unparse(node), "real numbers")
+        text = values[0].converted_to(REAL).text
         if name == "math.floor":
             whole = f"{BUILT_IN[name]}({text})"
             return Value(f"(long long){whole}", LONG, UNARY, real=whole)
         if name not in ("max", "min"):
             return Value(f"{BUILT_IN[name]}({text})", REAL)
         for other in values[1:]:
-            text = f"{BUILT_IN[name]}({text}, {other.converted(REAL).text})"
+            text = f"{BUILT_IN[name]}({text}, {other.converted_to(REAL).text})"
         return Value(text, REAL)
 
     # -- the order of evaluation --
 
-    def operands(self, nodes: Sequence[ast.expr]) -> list[Value]:
+    def translate_in_order(self, nodes: Sequence[ast.expr]) -> list[Value]:
         """Translate expressions that Python evaluates in this order, and C in any."""
-        readers = [self.may_read(node) for node in nodes]
-        if sum(readers) < 2 or not any(self.may_write(node) for node in nodes):
-            return [self.expression(node) for node in nodes]
+        readers = [self.may_read_memory(node) for node in nodes]
+        if sum(readers) < 2 or not any(self.may_write_memory(node) for node in nodes):
+            return [self.translate_expression(node) for node in nodes]
         values = []
         for node, reads in zip(nodes, readers, strict=True):
-            value = self.expression(node)
-            values.append(self.keep(value) if reads else value)
+            value = self.translate_expression(node)
+            values.append(self.keep_in_variable(value) if reads else value)
         return values
 
-    def may_read(self, node: ast.expr) -> bool:
+    def may_read_memory(self, node: ast.expr) -> bool:
         """Return whether an expression reads the memory, or passes it to a function."""
         parents = [part for part in ast.walk(node) if isinstance(part, (ast.Subscript, ast.Call))]
         inside = [
@@ -332,16 +345,16 @@ class Expressions(ABC):
         ]
         return any(isinstance(p, ast.Name) and self.types.get(p.id) == MEMORY for p in inside)
 
-    def may_write(self, node: ast.expr) -> bool:
+    def may_write_memory(self, node: ast.expr) -> bool:
         """Return whether evaluating an expression may change the memory."""
         calls = [part.func for part in ast.walk(node) if isinstance(part, ast.Call)]
         things = [resolve_name(self.module, ast.unparse(function)) for function in calls]
         return any(isinstance(thing, FunctionType) and writes_memory(thing) for thing in things)
 
 
-def in_c(name: str) -> str:
+def c_name(name: str) -> str:
     return f"{name}_" if name in TAKEN else name
 
 
-def is_simple(value: Value) -> bool:
+def is_simple_name(value: Value) -> bool:
     return value.rank == ATOM and all(part.isidentifier() for part in value.text.split("."))

@@ -16,7 +16,7 @@ from typing import Any
 
 from ..errors import CannotExport
 from .expressions import TAKEN
-from .functions import STORAGE, Body, wrapped
+from .functions import STORAGE, Body, wrap_lines
 from .values import C_TYPES, MEMORY, REAL, Type, Unit
 
 HEAD = """\
@@ -112,18 +112,20 @@ class Translation:
     # functions whose bodies are being read: a call of one of them is recursion
     begun: set[FunctionType] = field(default_factory=set)
 
-    def unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
+    def translated_unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
         """Return a function for arguments of these types, translated at the first call."""
         key = function, kinds
         if key not in self.units:
-            unit = Unit(function, kinds, self.own_name(function.__name__, key, function.__module__))
+            unit = Unit(
+                function, kinds, self.unique_c_name(function.__name__, key, function.__module__)
+            )
             self.begun.add(function)
             Body(self, unit).translate()
             self.begun.remove(function)
             self.units[key] = unit
         return self.units[key]
 
-    def own_name(self, name: str, thing: object, module: str) -> str:
+    def unique_c_name(self, name: str, thing: object, module: str) -> str:
         place = module.rpartition(".")[2]
         longer = f"{place.upper() if name.isupper() else place}_{name}"
         for known in (name, longer, *(f"{longer}_{number}" for number in range(2, 100))):
@@ -131,17 +133,17 @@ class Translation:
                 return known
         raise CannotExport(f"{name}: too many things of this name")
 
-    def constant(self, module: ModuleType, name: str) -> str:
-        known = self.own_name(name, (module.__name__, name), module.__name__)
+    def constant_name(self, module: ModuleType, name: str) -> str:
+        known = self.unique_c_name(name, (module.__name__, name), module.__name__)
         self.constants[known] = getattr(module, name)
         return known
 
-    def c_type(self, kind: Type) -> str:
+    def c_type_name(self, kind: Type) -> str:
         if isinstance(kind, str):
             return C_TYPES[kind]
         if kind not in self.structures:
             for part in kind:
-                self.c_type(part)
+                self.c_type_name(part)
             reals = all(part == REAL for part in kind)
             name = f"Reals{len(kind)}" if reals else f"Group{len(self.structures)}"
             self.structures[kind] = name
@@ -153,32 +155,32 @@ class Translation:
         tables = [(name, n) for name, n in self.constants.items() if isinstance(n, tuple)]
         structures = []
         for kind, name in self.structures.items():
-            parts = " ".join(f"{self.c_type(part)} i{i};" for i, part in enumerate(kind))
-            structures += wrapped(f"typedef struct {{ {parts} }} {name};", "", "    ")
+            parts = " ".join(f"{self.c_type_name(part)} i{i};" for i, part in enumerate(kind))
+            structures += wrap_lines(f"typedef struct {{ {parts} }} {name};", "", "    ")
         numbers = ["enum {", *(f"    {name} = {number}," for number, name in whole), "};\n"]
         return [
             "\n".join(numbers if whole else []),  # C has no empty enum
-            "".join(f"static const double {name} = {literal(n)};\n" for name, n in real),
-            "".join(table(name, numbers) for name, numbers in tables),
+            "".join(f"static const double {name} = {number_literal(n)};\n" for name, n in real),
+            "".join(table_definition(name, numbers) for name, numbers in tables),
             "\n".join(structures) + "\n",
         ]
 
 
-def table(name: str, numbers: tuple[float, ...]) -> str:
+def table_definition(name: str, numbers: tuple[float, ...]) -> str:
     """Return the definition of a table: of whole numbers where all of them are."""
     whole = all(isinstance(number, int) for number in numbers)
-    entries = "".join(f"    {n if whole else literal(n)},\n" for n in numbers)
+    entries = "".join(f"    {n if whole else number_literal(n)},\n" for n in numbers)
     return f"static const {'int' if whole else 'double'} {name}[] = {{\n{entries}}};\n"
 
 
-def literal(number: float) -> str:
+def number_literal(number: float) -> str:
     """Return a constant to the last bit, and how people write it."""
     known = {"inf": "INFINITY", "-inf": "-INFINITY", "nan": "NAN"}
     text = repr(number)
     return known.get(text) or f"{number.hex()} /* {text} */"
 
 
-def stored(units: Iterable[Unit], often: set[str]) -> Iterator[str]:
+def texts_with_storage(units: Iterable[Unit], often: set[str]) -> Iterator[str]:
     """Yield the functions' texts; those that are called in rare cases only are not inlined."""
     known = {unit.name: unit for unit in units}
     reached, ahead = set(often), list(often)
@@ -197,10 +199,10 @@ def translate(entries: Mapping[str, Callable[[Any, float], int]]) -> str:
     exits, often = [], set()
     for name, function in entries.items():
         assert isinstance(function, FunctionType)
-        inner = done.unit(function, (MEMORY, REAL)).name
+        inner = done.translated_unit(function, (MEMORY, REAL)).name
         head = f"int kernel_{name}(double *memory, double time)"
         if name not in SELDOM:
             often.add(inner)
         exits.append(f"{head};\n{head}\n{{\n    return {inner}(memory, time);\n}}\n")
-    bodies = [f"{text}\n" for text in stored(done.units.values(), often)]
+    bodies = [f"{text}\n" for text in texts_with_storage(done.units.values(), often)]
     return "\n".join([HEAD, *done.declarations(), HELPERS, *bodies, *exits])

@@ -51,7 +51,7 @@ def resolve_name(module: ModuleType, name: str) -> object:
 
 
 @functools.cache
-def imports(module: ModuleType) -> dict[str, tuple[str, str]]:
+def imported_names(module: ModuleType) -> dict[str, tuple[str, str]]:
     """Return module and name that each imported name was defined under."""
     known: dict[str, tuple[str, str]] = {}
     if not getattr(module, "__file__", "").endswith(".py"):  # written in C, as math
@@ -64,11 +64,11 @@ def imports(module: ModuleType) -> dict[str, tuple[str, str]]:
     return known
 
 
-def origin(module: ModuleType, name: str) -> tuple[ModuleType, str]:
+def original_definition(module: ModuleType, name: str) -> tuple[ModuleType, str]:
     """Return the module and the name under which a constant was defined."""
-    if name in imports(module):
-        source, original = imports(module)[name]
-        return origin(sys.modules[source], original)
+    if name in imported_names(module):
+        source, original = imported_names(module)[name]
+        return original_definition(sys.modules[source], original)
     return module, name
 
 
@@ -88,13 +88,13 @@ def targets_of(statement: ast.stmt) -> list[ast.expr]:
     ]
 
 
-def assigned_in(block: Block) -> list[ast.expr]:
+def assigned_targets_in(block: Block) -> list[ast.expr]:
     inside = [part for statement in block for part in ast.walk(statement)]
     statements = [part for part in inside if isinstance(part, ast.stmt)]
     return [target for statement in statements for target in targets_of(statement)]
 
 
-def may_declare(statement: ast.stmt, name: str) -> bool:
+def can_declare(statement: ast.stmt, name: str) -> bool:
     if not isinstance(statement, ast.Assign) or name in names_in(statement.value):
         return False
     return any(isinstance(one, ast.Name) and one.id == name for one in targets_of(statement))

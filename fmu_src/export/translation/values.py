@@ -33,23 +33,23 @@ class Value:
     rank: int = ATOM  # how closely its outermost operator binds
     real: str = ""  # the same number as a real one, where it is one before it is made whole
 
-    def within(self, rank: int) -> str:
+    def text_within(self, rank: int) -> str:
         """Return its text as an operand of an operator that binds so closely."""
         return self.text if self.rank >= rank else f"({self.text})"
 
     def item(self, place: int) -> Value:
         assert isinstance(self.type, tuple)
-        return Value(f"{self.within(ATOM)}.i{place}", self.type[place])
+        return Value(f"{self.text_within(ATOM)}.i{place}", self.type[place])
 
     def items(self) -> list[Value]:
         return [self.item(place) for place in range(len(self.type))]
 
-    def converted(self, kind: Type) -> Value:
+    def converted_to(self, kind: Type) -> Value:
         """Return the value as another type; only what C converts with a loss is written out."""
         if self.real and kind == REAL:
             return Value(self.real, REAL)
         if self.type == LONG and kind == REAL:
-            return Value(f"(double){self.within(UNARY)}", REAL, UNARY)
+            return Value(f"(double){self.text_within(UNARY)}", REAL, UNARY)
         return self
 
 

@@ -3,9 +3,9 @@ FMU.
 """
 
 from ...kernels.electrodynamic_shaker import memory as at
-from ...runtime.table import with_slots
+from ...runtime.table import messages_with_slot_numbers
 
-MESSAGES = with_slots(
+MESSAGES = messages_with_slot_numbers(
     {
         at.UNFINISHED: "the step to time = {TARGET} s cannot finish: it needs at least {WORK:0} "
         "power series, and reached {REPORT} s; a time constant is too short for such a step: "

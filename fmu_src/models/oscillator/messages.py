@@ -3,9 +3,9 @@ FMU.
 """
 
 from ...kernels.oscillator import memory as at
-from ...runtime.table import with_slots
+from ...runtime.table import messages_with_slot_numbers
 
-MESSAGES = with_slots(
+MESSAGES = messages_with_slot_numbers(
     {
         at.UNFINISHED: "the step to time = {TARGET} s cannot finish: {WORK:0} evaluations (at most "
         "{WORK_LIMIT:0}) reached only {REPORT} s, in "

@@ -15,15 +15,15 @@ from ...runtime.table import (
     INTEGER,
     LARGE,
     Variable,
-    cubic,
-    drive,
-    evaluation_limit,
-    not_negative,
-    numbered,
-    output,
+    cubic_input,
+    evaluation_limit_parameter,
+    input_variable,
+    non_negative_parameter,
+    output_variable,
     parameter,
-    positive,
-    start_value,
+    positive_parameter,
+    start_value_parameter,
+    with_slot_numbers,
 )
 
 MECHANICS = ("m1", "m2", "k1", "k2", "d1", "d2")
@@ -69,7 +69,7 @@ IMPACT = (*IMPACT_2, "box_amplitude", "box_frequency", "box_acceleration")
 DISCRETE: dict[str, Any] = {"variability": "discrete"}
 
 
-def samples(name: str, unit: str, description: str) -> tuple[Variable, ...]:
+def sample_outputs(name: str, unit: str, description: str) -> tuple[Variable, ...]:
     return tuple(
         Variable(
             f"{name}[{i + 1}]",
@@ -83,14 +83,14 @@ def samples(name: str, unit: str, description: str) -> tuple[Variable, ...]:
     )
 
 
-def peak(name: str, unit: str, signal: str) -> Variable:
+def peak_output(name: str, unit: str, signal: str) -> Variable:
     text = f"Largest absolute {signal} over the last communication step, exact, not sampled"
     return Variable(name, text, "local", unit, initial="calculated", minimum=0.0)
 
 
 FORCES = (
     *(
-        drive(
+        input_variable(
             f"force{half}_amplitude",
             "N",
             0.0,
@@ -98,8 +98,8 @@ FORCES = (
         )
         for half in (1, 2)
     ),
-    *cubic("force1", "N", "Force on mass 1, positive as x1"),
-    *cubic("force2", "N", "Force on mass 2, positive as x2"),
+    *cubic_input("force1", "N", "Force on mass 1, positive as x1"),
+    *cubic_input("force2", "N", "Force on mass 2, positive as x2"),
 )
 IN_CONTACT = (
     *(*IMPACT, "bonded", "box_jerk", "box_snap", "box_crackle"),
@@ -123,12 +123,12 @@ STROKE = parameter(
     maximum=HUGE,
 )
 SCALARS = (
-    positive("m1", "kg", 1.0, "Mass 1"),
-    positive("m2", "kg", 1.0, "Mass 2"),
-    positive("k1", "N/m", 1.0, "Stiffness between mass 1 and the box"),
-    positive("k2", "N/m", 1.2, "Stiffness between mass 2 and the box"),
-    not_negative("d1", "N.s/m", 0.01, "Viscous damping between mass 1 and the box"),
-    not_negative("d2", "N.s/m", 0.01, "Viscous damping between mass 2 and the box"),
+    positive_parameter("m1", "kg", 1.0, "Mass 1"),
+    positive_parameter("m2", "kg", 1.0, "Mass 2"),
+    positive_parameter("k1", "N/m", 1.0, "Stiffness between mass 1 and the box"),
+    positive_parameter("k2", "N/m", 1.2, "Stiffness between mass 2 and the box"),
+    non_negative_parameter("d1", "N.s/m", 0.01, "Viscous damping between mass 1 and the box"),
+    non_negative_parameter("d2", "N.s/m", 0.01, "Viscous damping between mass 2 and the box"),
     parameter("e", "1", 0.7, "Coefficient of restitution", minimum=0.0, maximum=1.0),
     parameter(
         "gamma",
@@ -142,22 +142,22 @@ SCALARS = (
     parameter(
         "bonded", "", 0.0, "true: the undamaged structure, both masses glued for good", type=BOOLEAN
     ),
-    start_value(
+    start_value_parameter(
         "x1_start",
         "m",
         "Displacement of mass 1 at the start, from its place at rest: with a preload F that is "
         "x1 = -F/k1, else x1 = 0",
         HUGE,
     ),
-    start_value(
+    start_value_parameter(
         "x2_start",
         "m",
         "Displacement of mass 2 at the start, from its place at rest: with a preload F that is "
         "x2 = F/k2, else x2 = 0; so that the gap is not below 0",
         HUGE,
     ),
-    start_value("v1_start", "m/s", "Velocity of mass 1 at the start", HUGE),
-    start_value("v2_start", "m/s", "Velocity of mass 2 at the start", HUGE),
+    start_value_parameter("v1_start", "m/s", "Velocity of mass 1 at the start", HUGE),
+    start_value_parameter("v2_start", "m/s", "Velocity of mass 2 at the start", HUGE),
     parameter(
         "phase_start",
         "rad",
@@ -174,8 +174,10 @@ SCALARS = (
         type=BOOLEAN,
         variability="tunable",
     ),
-    drive("box_amplitude", "m", 1.0, "Amplitude a of the harmonic box motion a sin(phase)"),
-    drive(
+    input_variable(
+        "box_amplitude", "m", 1.0, "Amplitude a of the harmonic box motion a sin(phase)"
+    ),
+    input_variable(
         "box_frequency",
         "rad/s",
         0.4,
@@ -185,68 +187,69 @@ SCALARS = (
         maximum=LARGE,
         display_unit="Hz",
     ),
-    *cubic(EXTRA[0], "m/s2", "Acceleration of the box added to the harmonic one", HUGE, EXTRA[1:]),
-    output(
+    *cubic_input(
+        EXTRA[0], "m/s2", "Acceleration of the box added to the harmonic one", HUGE, EXTRA[1:]
+    ),
+    output_variable(
         "x1",
         "m",
         "Displacement of mass 1 relative to the box, from the unloaded spring",
         ("x1_start", *LOADED),
     ),
-    output(
+    output_variable(
         "x2",
         "m",
         "Displacement of mass 2 relative to the box, from the unloaded spring",
         ("x2_start", *LOADED),
     ),
-    output("v1", "m/s", "Velocity of mass 1 relative to the box", IMPACT),
-    output("v2", "m/s", "Velocity of mass 2 relative to the box", IMPACT_2),
-    output("x_rel", "m", "Gap x2 - x1 + clearance", GAP, minimum=0.0),
-    output("v_rel", "m/s", "Velocity of the gap v2 - v1", IMPACT),
-    output(
+    output_variable("v1", "m/s", "Velocity of mass 1 relative to the box", IMPACT),
+    output_variable("v2", "m/s", "Velocity of mass 2 relative to the box", IMPACT_2),
+    output_variable("x_rel", "m", "Gap x2 - x1 + clearance", GAP, minimum=0.0),
+    output_variable("v_rel", "m/s", "Velocity of the gap v2 - v1", IMPACT),
+    output_variable(
         "xi1",
         "1",
         "Displacement of mass 1 over a eta^2, paper's (3); 0 where that is below 1e-200 m",
         ("x1_start", *LOADED, *UNIT),
     ),
-    output(
+    output_variable(
         "xi2",
         "1",
         "Displacement of mass 2 over a eta^2, paper's (3); 0 where that is below 1e-200 m",
         ("x2_start", *LOADED, *UNIT),
     ),
-    output(
+    output_variable(
         "xi_rel",
         "1",
         "Gap over a eta^2, paper's (21); 0 where that is below 1e-200 m",
         (*GAP, "k1", *UNIT),
     ),
-    output(
+    output_variable(
         "box_force",
         "N",
         "Force of springs and dampers on the box, k1 x1 + d1 v1 + k2 x2 + d2 v2",
         IMPACT,
     ),
-    output(
+    output_variable(
         "box_impulse",
         "N.s",
         "Integral of box_force over the last communication step, exact, through impacts too",
     ),
-    output(
+    output_variable(
         "box_impulse_moment",
         "N.s2",
         "Integral of (time since the step began) times box_force over the last communication step",
     ),
-    output(
+    output_variable(
         "contact_force",
         "N",
         "Compressive force between the masses in permanent contact, paper's (18)",
         (*IMPACT, "bonded"),
         minimum=0.0,
     ),
-    output(  # from rest, what drives the masses first decides; their motion is the same either way
-        "in_contact", "", "Permanent contact", IN_CONTACT, type=BOOLEAN, **DISCRETE
-    ),
-    output(
+    # from rest, what drives the masses first decides; their motion is the same either way
+    output_variable("in_contact", "", "Permanent contact", IN_CONTACT, type=BOOLEAN, **DISCRETE),
+    output_variable(
         "phase",
         "rad",
         "Phase of the harmonic excitation in [0, 2 pi)",
@@ -254,9 +257,11 @@ SCALARS = (
         minimum=0.0,
         maximum=6.283185307179586,
     ),
-    output("impact_count", "", "Impacts since the start", CLOSING, **COUNT),
-    output("impact_time", "s", "Time of the last impact; 0 before the first", CLOSING, **DISCRETE),
-    output(
+    output_variable("impact_count", "", "Impacts since the start", CLOSING, **COUNT),
+    output_variable(
+        "impact_time", "s", "Time of the last impact; 0 before the first", CLOSING, **DISCRETE
+    ),
+    output_variable(
         "impact_velocity",
         "m/s",
         "Closing speed before the last impact; 0 before the first",
@@ -264,7 +269,7 @@ SCALARS = (
         minimum=0.0,
         **DISCRETE,
     ),
-    output(
+    output_variable(
         "impact_energy",
         "J",
         "Energy lost in impacts since the start",
@@ -272,14 +277,16 @@ SCALARS = (
         minimum=0.0,
         **DISCRETE,
     ),
-    output(
+    output_variable(
         "x_rel_max",
         "m",
         "Largest gap over the last communication step, exact, not sampled",
         (*GAP, "x_rel_max_on"),
         minimum=0.0,
     ),
-    output("contact_count", "", "Permanent contacts begun by impacts since the start", **COUNT),
+    output_variable(
+        "contact_count", "", "Permanent contacts begun by impacts since the start", **COUNT
+    ),
     parameter(
         "sample_count",
         "",
@@ -301,27 +308,27 @@ PEAKS = (
         type=BOOLEAN,
         variability="tunable",
     ),
-    peak("x1_max", "m", "displacement x1"),
-    peak("x2_max", "m", "displacement x2"),
-    peak("a1_max", "m/s2", "acceleration in space, between impacts, of mass 1"),
-    peak("a2_max", "m/s2", "acceleration in space, between impacts, of mass 2"),
+    peak_output("x1_max", "m", "displacement x1"),
+    peak_output("x2_max", "m", "displacement x2"),
+    peak_output("a1_max", "m/s2", "acceleration in space, between impacts, of mass 1"),
+    peak_output("a2_max", "m/s2", "acceleration in space, between impacts, of mass 2"),
 )
-VARIABLES = numbered(
+VARIABLES = with_slot_numbers(
     SCALARS
-    + samples("x1_sample", "m", "x1")
-    + samples("x2_sample", "m", "x2")
-    + samples("v1_sample", "m/s", "v1")
-    + samples("v2_sample", "m/s", "v2")
+    + sample_outputs("x1_sample", "m", "x1")
+    + sample_outputs("x2_sample", "m", "x2")
+    + sample_outputs("v1_sample", "m/s", "v1")
+    + sample_outputs("v2_sample", "m/s", "v2")
     + (
-        output(
+        output_variable(
             "evaluations",
             "",
             "Evaluations of the event function in the last communication step",
             **COUNT,
         ),
-        evaluation_limit("event function"),
+        evaluation_limit_parameter("event function"),
         *ADDED[:2],
-        output(
+        output_variable(
             "sticking_energy",
             "J",
             "Part of impact_energy: energy of the flights left out where chattering ended",
@@ -333,7 +340,7 @@ VARIABLES = numbered(
         *FORCES,
         WALL,
         STROKE,
-        output(
+        output_variable(
             "impact_side",
             "",
             "Where the last impact was: 1 at x_rel = 0, 2 at x_rel = stroke; 0 before the first",
@@ -341,7 +348,7 @@ VARIABLES = numbered(
             maximum=2,
             **COUNT,
         ),
-        output(
+        output_variable(
             "contact_side",
             "",
             "Where the masses are together: 1 at x_rel = 0, 2 at x_rel = stroke; 0 apart",

@@ -16,5 +16,5 @@ def no_compiler(*_):
 
 
 if __name__ == "__main__":
-    pythonfmu_form.link_all = no_compiler
+    pythonfmu_form.link_for_platforms = no_compiler
     export(sys.argv[1], PYTHON_FORM, Path("out"))

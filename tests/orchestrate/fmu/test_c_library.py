@@ -21,7 +21,7 @@ COMPILED = b"compiled " + sources.guid(SOURCE).encode()
 def cache(tmp_path, monkeypatch):
     """A cache folder; a compiler that notes what it compiles."""
     made = []
-    monkeypatch.setattr(sources, "export", lambda *what: made.append(what) or COMPILED)
+    monkeypatch.setattr(sources, "compile_loop", lambda *what: made.append(what) or COMPILED)
     exported.warn_once.cache_clear()
     monkeypatch.setattr("orchestrate.files.trusted_owners", lambda: ({os.getuid()}, set()))
     umask = os.umask(0o002)  # as of systems with a group for each user
@@ -34,7 +34,7 @@ def test_it_is_compiled_once_and_others_cannot_write_it(cache):
     path = find_or_compile_library(SOURCE, folder)
     assert path.read_bytes() == COMPILED
     assert find_or_compile_library(SOURCE, folder) == path and len(made) == 1
-    for part in (path, sources.digest_file(path), path.parent, path.parent.parent):
+    for part in (path, sources.digest_path(path), path.parent, path.parent.parent):
         assert not part.stat().st_mode & (stat.S_IWGRP | stat.S_IWOTH)
 
 
@@ -43,7 +43,7 @@ def test_what_is_not_as_it_was_compiled_is_compiled_anew(cache, damage):
     folder, made = cache
     path = find_or_compile_library(SOURCE, folder)
     if damage.startswith("no"):
-        (sources.digest_file(path) if damage == "no digest" else path).unlink()
+        (sources.digest_path(path) if damage == "no digest" else path).unlink()
     else:
         FILE_DAMAGE[damage](path, random.Random(1))
     assert find_or_compile_library(SOURCE, folder) == path and path.read_bytes() == COMPILED
@@ -59,8 +59,8 @@ def test_what_others_could_have_written_is_compiled_anew(cache, part, mode):
     path = find_or_compile_library(SOURCE, folder)
     planted = b"planted " + COMPILED
     path.write_bytes(planted)
-    sources.digest_file(path).write_text(sources.digest(planted))
-    parts = path, sources.digest_file(path), path.parent, path.parent.parent
+    sources.digest_path(path).write_text(sources.library_digest(planted))
+    parts = path, sources.digest_path(path), path.parent, path.parent.parent
     one = parts[("library", "digest", "folder", "its folder").index(part)]
     one.chmod(one.stat().st_mode | mode)
     assert find_or_compile_library(SOURCE, folder) == path and path.read_bytes() == COMPILED
