@@ -96,7 +96,7 @@ def first_bytes(path: Path) -> bytes:
 
 
 def render_page(
-    chosen: SweepData, shown: dict[str, str], drawn: dict[str, Any], kernel: WebKernel
+    sweep: SweepData, shown: dict[str, str], curves: dict[str, Any], kernel: WebKernel
 ) -> str:
     scripts = read_javascript_modules()
     made_by = f"vibroimpact {__version__}, kernel {kernel.guid}"
@@ -111,19 +111,19 @@ def render_page(
             worker=Markup(bundle_modules(scripts, "worker")),
             tour=tour_in_units(shown),
             words=WORDS,
-            branches=drawn["branches"],
-            record=drawn["record"],
+            branches=curves["branches"],
+            record=curves["record"],
             source=made_by,
-            swept=f"sweep by {chosen.source}" if chosen.source else "",
+            swept=f"sweep by {sweep.source}" if sweep.source else "",
             table={
-                **page_data(chosen),
+                **page_data(sweep),
                 "shown": shown,
-                **drawn,
+                **curves,
                 "variables": kernel.variables,
                 "loops": {**tables_for_web_page(Pair, StepAnswer), "exponent": EXPONENT},
                 "drive": drive_data(),
             },
-            data=compress_to_base64(chosen.numbers.astype("<f8").tobytes()),
+            data=compress_to_base64(sweep.numbers.astype("<f8").tobytes()),
             kernel=compress_to_base64(kernel.module),
             **voltage_slider_values(),
         )
@@ -158,9 +158,9 @@ def policy_digest(content: str) -> str:
     return f"sha256-{base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()}"
 
 
-def page_data(chosen: SweepData) -> dict[str, Any]:
+def page_data(sweep: SweepData) -> dict[str, Any]:
     return {
-        "structure": structure_numbers(chosen.structure) | chosen.pushes,
+        "structure": structure_numbers(sweep.structure) | sweep.pushes,
         "usual": structure_numbers(Structure()),
         "ranges": {name: [q.minimum, q.maximum] for name, q in PAGES.items()} | FLAGS,
         "units": {
@@ -169,12 +169,12 @@ def page_data(chosen: SweepData) -> dict[str, Any]:
             if quantity.unit != "1"
         },
         "alike": AttractorSettings().alike,
-        "settings": chosen.settings,
-        "directions": chosen.directions,
-        "count": chosen.count,
-        "low": chosen.low,
-        "high": chosen.high,
-        "level": chosen.level,
+        "settings": sweep.settings,
+        "directions": sweep.directions,
+        "count": sweep.count,
+        "low": sweep.low,
+        "high": sweep.high,
+        "level": sweep.level,
         "tour": {stop.name: stop.link_query for step in TOUR for stop in step.stops},
     }
 

@@ -123,11 +123,11 @@ STEPS = (
 )
 
 
-def convert_quantities(text: str, shown: Mapping[str, str]) -> str:
+def convert_quantities(text: str, units: Mapping[str, str]) -> str:
     def format_quantity(match: re.Match[str]) -> str:
         number, unit = match.groups()
         sizes = FACTORS[KINDS[unit]]
-        word = shown[KINDS[unit]]
+        word = units[KINDS[unit]]
         scale = sizes[unit] / (OMEGA if word == "eta" else sizes[word])
         value = format(Decimal(f"{float(number) * scale:.4g}"), "f")  # without an exponent
         return f"η = {value}" if word == "eta" else f"{value} {SPELLED.get(word, word)}"
@@ -135,13 +135,13 @@ def convert_quantities(text: str, shown: Mapping[str, str]) -> str:
     return QUANTITY.sub(format_quantity, text)
 
 
-def tour_in_units(shown: Mapping[str, str]) -> tuple[Step, ...]:
+def tour_in_units(units: Mapping[str, str]) -> tuple[Step, ...]:
     return tuple(
         replace(
             step,
-            text=convert_quantities(step.text, shown),
+            text=convert_quantities(step.text, units),
             stops=tuple(
-                replace(stop, label=convert_quantities(stop.label, shown)) for stop in step.stops
+                replace(stop, label=convert_quantities(stop.label, units)) for stop in step.stops
             ),
         )
         for step in STEPS

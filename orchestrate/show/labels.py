@@ -157,36 +157,36 @@ def format_frequency(data: xr.Dataset, frequency: float) -> str:
     return f"{letter} = {frequency / factor:.5g} {word}"
 
 
-def excitation_texts(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:
+def excitation_texts(data: xr.Dataset, parameters: Mapping[str, float]) -> dict[str, str]:
     units, texts = display_units_of(data), {}
-    if "eta" in known:
+    if "eta" in parameters:
         omega = omega_of(data)
         by_unit = units.frequency not in ("", "eta") and math.isfinite(omega)
-        eta = known["eta"]
+        eta = parameters["eta"]
         words = format_frequency(data, eta * omega) if by_unit else format_parameters({"eta": eta})
         texts["eta"] = words
-    if known.get("frequency"):  # 0 where nothing is harmonic
-        texts["frequency"] = format_frequency(data, known["frequency"])
-    if "amplitude" in known and units.acceleration and "frequency" in known:
-        texts["amplitude"] = format_level(data, known["amplitude"] * known["frequency"] ** 2)
-    elif known.get("amplitude") and not is_paper_amplitude(data, known):
-        texts["amplitude"] = f"$a$ = {format_length(data, known['amplitude'])}"
-    elif "level" in known:
-        texts["level"] = format_level(data, known["level"])
+    if parameters.get("frequency"):  # 0 where nothing is harmonic
+        texts["frequency"] = format_frequency(data, parameters["frequency"])
+    if "amplitude" in parameters and units.acceleration and "frequency" in parameters:
+        texts["amplitude"] = format_level(
+            data, parameters["amplitude"] * parameters["frequency"] ** 2
+        )
+    elif parameters.get("amplitude") and not is_paper_amplitude(data, parameters):
+        texts["amplitude"] = f"$a$ = {format_length(data, parameters['amplitude'])}"
+    elif "level" in parameters:
+        texts["level"] = format_level(data, parameters["level"])
     elif "frequency" in data.dims and "amplitude" in data.coords:
         level = (data.amplitude * data.frequency**2).values
         if math.isclose(level.min(), level.max(), rel_tol=1e-9):
             texts["amplitude"] = format_level(data, level.max())
-    loads = {name: known[name] for name in LOADS if known.get(name)}
+    loads = {name: parameters[name] for name in LOADS if parameters.get(name)}
     return texts | {name: LOADS[name].format(value) for name, value in loads.items()}
 
 
-def is_paper_amplitude(data: xr.Dataset, known: Mapping[str, float]) -> bool:
+def is_paper_amplitude(data: xr.Dataset, parameters: Mapping[str, float]) -> bool:
     """Return whether the amplitude is 1/eta^2 m, so that displacements are the paper's ratios."""
-    eta = known.get("eta", known.get("frequency", math.nan) / omega_of(data))
-    return shows_lengths_as_ratios(data) and math.isclose(
-        known["amplitude"] * eta**2, 1.0, rel_tol=1e-9
-    )
+    eta = parameters.get("eta", parameters.get("frequency", math.nan) / omega_of(data))
+    return shows_lengths_as_ratios(data) and math.isclose(parameters["amplitude"] * eta**2, 1.0, rel_tol=1e-9)
 
 
 def format_level(data: xr.Dataset, level: float) -> str:
@@ -208,27 +208,27 @@ def si_prefix(largest: float) -> tuple[float, str]:
     return next(((f, name) for f, name in PREFIXES if largest >= f), PREFIXES[0])
 
 
-def paper_ratios(known: Mapping[str, float]) -> dict[str, float]:
+def paper_ratios(parameters: Mapping[str, float]) -> dict[str, float]:
     """Return the paper's ratios (6) to (8) of a structure in SI, as far as attributes tell."""
-    if not {"m1", "m2", "k1", "k2", "d1", "d2"} <= set(known):
+    if not {"m1", "m2", "k1", "k2", "d1", "d2"} <= set(parameters):
         return {}
-    m1, m2, k1, k2 = (known[name] for name in ("m1", "m2", "k1", "k2"))
-    omega = omega_of(known)
-    D1, D2 = (round(known[d] / (2.0 * omega * m), 12) for d, m in (("d1", m1), ("d2", m2)))
+    m1, m2, k1, k2 = (parameters[name] for name in ("m1", "m2", "k1", "k2"))
+    omega = omega_of(parameters)
+    D1, D2 = (round(parameters[d] / (2.0 * omega * m), 12) for d, m in (("d1", m1), ("d2", m2)))
     damping = {"D": D1} if D1 == D2 else {"D1": D1, "D2": D2}
-    if known.get("wall"):
+    if parameters.get("wall"):
         return {"D": D1, "omega": omega}
     return {**damping, "mu": m2 / m1, "kappa": k2 / k1, "omega": omega}
 
 
-def format_halves(known: Mapping[str, float]) -> str:
+def format_halves(parameters: Mapping[str, float]) -> str:
     """Format each half's natural frequency and damping ratio, and the mass ratio."""
     frequencies, damping = [], []
-    for half in "1" if known.get("wall") else "12":
-        m, k, d = (known[letter + half] for letter in "mkd")
+    for half in "1" if parameters.get("wall") else "12":
+        m, k, d = (parameters[letter + half] for letter in "mkd")
         frequencies.append(f"$f_{half}$ = {math.sqrt(k / m) / (2.0 * math.pi):.4g} Hz")
         damping.append(rf"$\zeta_{half}$ = {50.0 * d / math.sqrt(k * m):.4g} %")
-    mu = known["m2"] / known["m1"]  # 1 of one mass
+    mu = parameters["m2"] / parameters["m1"]  # 1 of one mass
     masses = "" if mu == USUAL_VALUES["mu"] else format_parameters({"mu": mu})
     return join_by_commas([*frequencies, *damping, masses])
 

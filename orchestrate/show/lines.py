@@ -299,11 +299,11 @@ def orbit_colours_and_labels(data: xr.Dataset) -> tuple[dict[str, str], np.ndarr
 
 
 def draw_attractor(
-    panel: Axes, x: np.ndarray, values: np.ndarray, words: np.ndarray, colours: dict[str, str]
+    panel: Axes, x: np.ndarray, values: np.ndarray, labels: np.ndarray, colours: dict[str, str]
 ) -> None:
     panel.plot(x, values, "-", color="#c8c8c8", linewidth=0.8, zorder=1.5)
-    for word in dict.fromkeys(words[words != ""]):
-        of_kind = np.where(words == word, values, np.nan)
+    for word in dict.fromkeys(labels[labels != ""]):
+        of_kind = np.where(labels == word, values, np.nan)
         draw_line(panel, x, of_kind, "-", colours[word], 1.4)
         there = np.isfinite(np.concatenate([[np.nan], of_kind, [np.nan]]))
         alone = there[1:-1] & ~there[:-2] & ~there[2:]  # to which no line leads

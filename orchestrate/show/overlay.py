@@ -91,9 +91,9 @@ def explain_excitation_mismatch(branch: xr.Dataset, data: xr.Dataset, over: str)
     return ""
 
 
-def are_all_equal(some: np.ndarray, others: np.ndarray) -> bool:
+def are_all_equal(first: np.ndarray, second: np.ndarray) -> bool:
     """Return whether all elements of both arrays are one number, apart from rounding."""
-    return np.allclose(np.append(some, others), some[0], rtol=SAME, atol=0.0)
+    return np.allclose(np.append(first, second), first[0], rtol=SAME, atol=0.0)
 
 
 def amplitude_at(data: xr.Dataset, frequency: np.ndarray) -> np.ndarray:

@@ -95,14 +95,14 @@ def plot(
     return resize_for_slide(draw(title=title) if title else draw(), shape)
 
 
-def choose_drawing(shown: dict[str, list[xr.Dataset]]) -> Callable[..., Figure] | None:
-    kind, *more = sorted(shown, key=lambda kind: kind in OVER_OTHERS) or [""]
+def choose_drawing(results_by_kind: dict[str, list[xr.Dataset]]) -> Callable[..., Figure] | None:
+    kind, *more = sorted(results_by_kind, key=lambda kind: kind in OVER_OTHERS) or [""]
     if kind not in DRAW:
         return None
-    (first, *others), partner = shown[kind], PARTNERS.get(kind)
-    runs = by_structure(shown[kind])
+    (first, *others), partner = results_by_kind[kind], PARTNERS.get(kind)
+    runs = by_structure(results_by_kind[kind])
     if partner == OTHER:
-        branches = shown.get("drive_branch", [])
+        branches = results_by_kind.get("drive_branch", [])
         if len(runs) <= len(others) or more not in ([], ["drive_branch"]) or len(branches) > 1:
             return None
         if branches and kind != "couple":
@@ -111,9 +111,9 @@ def choose_drawing(shown: dict[str, list[xr.Dataset]]) -> Callable[..., Figure] 
     if not more and (not others or partner == MORE):
         return partial(DRAW[kind], first, *others)
     if more == ["border"] and not others and kind == "map":
-        return partial(DRAW[kind], first, overlay=shown["border"])
+        return partial(DRAW[kind], first, overlay=results_by_kind["border"])
     if more == ["branch"] and not others and partner == BRANCHES:
-        return partial(DRAW[kind], first, overlay=shown["branch"])
+        return partial(DRAW[kind], first, overlay=results_by_kind["branch"])
     if not more and len(others) == 1 and len(runs) == 2 and partner == BONDED:
         return partial(DRAW[kind], runs["delaminated"], bonded=runs["bonded"])
     return None

@@ -2,7 +2,7 @@
 
 import { Picture } from "./picture.js";
 import { traitsOf } from "./model.js";
-import { secondOf } from "./motion_view.js";
+import { secondName } from "./motion_view.js";
 
 const FLASH = 0.04; // of a period
 
@@ -22,34 +22,34 @@ export class Animation {
   }
 
   /** @param {Motion} motion @param {Point} point */
-  load(motion, point) {
+  setMotion(motion, point) {
     Object.assign(this, { motion, turn: 0, offset: traitsOf(point).gap_offset, point });
     this.largest = motion.states.reduce((most, value, i) => (i % 4 < 2 ? Math.max(most, Math.abs(value)) : most), 0);
     this.picture.redraw();
   }
 
   /** Run, or hold. @param {boolean} running */
-  run(running) {
+  setRunning(running) {
     const began = running && !this.running;
     this.running = running;
     this.last = performance.now();
-    if (began) requestAnimationFrame((now) => this.tick(now));
+    if (began) requestAnimationFrame((now) => this.moveTo(now));
   }
 
   /** @param {number} now */
-  tick(now) {
+  moveTo(now) {
     if (!this.running) return;
     if (this.motion) {
       const length = (this.motion.time.length - 1) / this.motion.points;
       this.turn = (this.turn + (Math.max(now - this.last, 0) / 1000) * this.speed) % length;
-      this.picture.paint();
+      this.picture.drawNow();
     }
     this.last = now;
-    requestAnimationFrame((next) => this.tick(next));
+    requestAnimationFrame((next) => this.moveTo(next));
   }
 
   /** Continue to the next impact; the turn it happens at, null where there is none. */
-  nextImpact() {
+  moveToNextImpact() {
     if (!this.motion) return null;
     this.running = false;
     const { impactTime, period, first } = this.motion;
@@ -62,7 +62,7 @@ export class Animation {
   }
 
   /** Displacements now, between the recorded states by a cubic. @param {Motion} motion */
-  now(motion) {
+  displacementsNow(motion) {
     const place = Math.min(this.turn * motion.points, motion.time.length - 1.000001);
     const i = Math.floor(place);
     const u = place - i;
@@ -86,7 +86,7 @@ export class Animation {
     pen.text(width / 2, 10, "← the box is shaken →", { fill: theme.soft });
     pen.box(middle - half, top, 2 * half, tall, { stroke: theme.ink, width: 3 });
     const scale = (half * 0.33) / (this.largest || 1);
-    const [first, second] = this.now(motion);
+    const [first, second] = this.displacementsNow(motion);
     const [x1, x2] = [first, second + this.offset].map((x) => middle + scale * x);
     const [wide, high] = [half * 0.3, tall * 0.42];
     const level = top + tall / 2;
@@ -100,15 +100,15 @@ export class Animation {
       const [back, over] = [x2 - scale * stroke - wide, level - high / 2 - 6];
       pen.line([x2 + wide / 2, x2 + wide / 2, back - 3, back - 3], [level - high / 2, over, over, level], { stroke: theme.two, width: 5 });
     }
-    const flash = this.flash(motion);
+    const flash = this.flashBrightness(motion);
     if (flash > 0) pen.dots([(x1 + x2) / 2], [level], 6 + 16 * flash, { fill: theme.hit, alpha: flash });
     pen.text(x1 - wide / 2, level, "half 1", { fill: theme.paper });
-    pen.text(x2 + wide / 2, level, secondOf(point), { fill: theme.paper });
+    pen.text(x2 + wide / 2, level, secondName(point), { fill: theme.paper });
     pen.text(width / 2, height - 12, `period ${this.turn.toFixed(2)}`, { fill: theme.ink });
   }
 
   /** How bright the last impact still is, 0 to 1. @param {Motion} motion */
-  flash({ impactTime, impactSpeed, period, first }) {
+  flashBrightness({ impactTime, impactSpeed, period, first }) {
     let bright = 0;
     const fastest = impactSpeed.reduce((most, speed) => Math.max(most, speed), 0);
     for (let i = 0; i < impactTime.length; i++) {

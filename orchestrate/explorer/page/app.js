@@ -4,27 +4,27 @@ import { BasinPanel } from "./basin_panel.js";
 import { diagramCommand, motionCommand } from "./command.js";
 import { Controls } from "./controls.js";
 import { WorkerPool } from "./worker_pool.js";
-import { nearest, startAt } from "./diagram.js";
-import { listen } from "./diagram_input.js";
+import { nearestIndex, startOfResponse } from "./diagram.js";
+import { listenToDiagram } from "./diagram_input.js";
 import { DrivePanel } from "./drive_panel.js";
-import { inHertz, PAPER, pointAt, sameLevel } from "./excitation.js";
-import { toDefault } from "./field.js";
+import { isInHertz, PAPER, pointAt, isSameLevel } from "./excitation.js";
+import { resetToDefault } from "./field.js";
 import { Inspector } from "./inspector.js";
 import { Library } from "./kernel.js";
-import { ETAS, fragmentOf, viewOf } from "./link.js";
-import { openingOf } from "./opening.js";
-import { overlayOf } from "./overlay.js";
-import { carried, useLibrary } from "./model.js";
-import { load } from "./payload.js";
+import { ETAS, linkFragment, viewFromLink } from "./link.js";
+import { openingWords } from "./opening.js";
+import { branchOverlay } from "./overlay.js";
+import { carryState, useLibrary } from "./model.js";
+import { loadPayload } from "./payload.js";
 import { Player } from "./player.js";
 import { Regions } from "./regions.js";
 import { USUAL } from "./response.js";
 import { saveShown } from "./saving.js";
-import { shown } from "./scale.js";
+import { formatNumber } from "./scale.js";
 import { Shaking } from "./shaking.js";
-import { omegaOf, sameStructure } from "./structure.js";
+import { omegaOf, isSameStructure } from "./structure.js";
 import { TourPanel } from "./tour_panel.js";
-import { frequencyUnit, showIn, unitsOption, wordsOf } from "./units.js";
+import { ratioUnit, setShownUnits, unitsOption, axisWords } from "./units.js";
 
 const FIRST_ETA = 0.7; // of the motion that the page opens with, where its diagram has it
 const REST = [0, 0, 0, 0];
@@ -35,10 +35,10 @@ const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 const input = (id) => /** @type {HTMLInputElement} */ (at(id));
 
 export class App {
-  /** @param {Awaited<ReturnType<typeof load>>} payload */
+  /** @param {Awaited<ReturnType<typeof loadPayload>>} payload */
   constructor({ table, compiled, worker, diagram }) {
     this.table = table;
-    showIn(table.shown);
+    setShownUnits(table.shown);
     useLibrary(new Library(compiled));
     const [unit, value] = table.level;
     /** @type {View} */
@@ -54,122 +54,122 @@ export class App {
     this.waiting = false; // for the start of the chosen response
     const size = Math.max(1, Math.min(4, (navigator.hardwareConcurrency || 2) - 1));
     this.pool = new WorkerPool(worker, compiled, size);
-    this.pool.onerror = (text, task) => (task === "motion" ? this.inspector.fail(text) : this.tell(text));
-    this.regions = new Regions(/** @type {HTMLCanvasElement} */ (at("diagram")), this.pool, diagram, table, () => this.refreshDiagram());
-    this.inspector = new Inspector(at, this.pool, table.record, () => this.refreshMotion());
+    this.pool.onerror = (text, task) => (task === "motion" ? this.inspector.showFailure(text) : this.showStatus(text));
+    this.regions = new Regions(/** @type {HTMLCanvasElement} */ (at("diagram")), this.pool, diagram, table, () => this.updateDiagramTexts());
+    this.inspector = new Inspector(at, this.pool, table.record, () => this.updateMotionTexts());
     this.player = new Player(at, this.inspector, {
-      tell: (text) => this.tell(text),
-      changed: () => this.refreshMotion(),
+      tell: (text) => this.showStatus(text),
+      changed: () => this.updateMotionTexts(),
     });
     this.basin = new BasinPanel(at, this.pool, table.alike, {
       choose: (start) => this.inspect(this.eta, start),
       seen: () => this.computeBasin(),
-      others: () => this.hint(),
+      others: () => this.showHint(),
     });
     this.drive = new DrivePanel(at, this.pool, table.drive);
-    this.controls = new Controls(at, this.structure, table, (structure) => this.change(structure));
+    this.controls = new Controls(at, this.structure, table, (structure) => this.changeBeam(structure));
     this.shaking = new Shaking(at, table.units, this.structure, this.level, {
       choose: (eta, exactly) => this.choose(eta, exactly),
       change: (structure, level) => {
         const before = this.level;
-        this.change(structure, level);
-        this.carried = this.carried || inHertz(before) !== inHertz(level);
+        this.changeBeam(structure, level);
+        this.carried = this.carried || isInHertz(before) !== isInHertz(level);
       },
     });
     this.tour = new TourPanel(at("tour"), table.tour);
     this.regions.view.overlay = (pen, picture, theme) => {
-      if (input("branches").checked && sameStructure(this.structure, table.structure)) {
-        overlayOf(table, this.regions.view)(pen, picture, theme);
+      if (input("branches").checked && isSameStructure(this.structure, table.structure)) {
+        branchOverlay(table, this.regions.view)(pen, picture, theme);
       }
     };
-    this.connect();
+    this.connectElements();
     this.first = location.hash; // with which the page was opened
-    this.restore(this.first);
-    this.player.animate();
-    this.refreshMotion();
+    this.openLink(this.first);
+    this.player.startAnimation();
+    this.updateMotionTexts();
   }
 
   /** Buttons, keys and inputs. */
-  connect() {
+  connectElements() {
     const { regions, inspector } = this;
-    listen(regions.view, {
+    listenToDiagram(regions.view, {
       choose: (eta) => this.choose(eta),
       zoom: (low, high) => this.open(low, high),
-      move: (steps) => this.move(steps),
-      back: () => this.go(-1),
-      forth: () => this.go(1),
+      move: (steps) => this.moveChoice(steps),
+      back: () => this.stepThroughDiagrams(-1),
+      forth: () => this.stepThroughDiagrams(1),
       whole: () => this.open(this.table.low, this.table.high),
     });
     const half = () => (regions.diagram.high - regions.diagram.low) / 2;
     const middle = () => (Number.isFinite(this.eta) ? this.eta : regions.diagram.low + half());
     /** @type {Record<string, () => void>} */
     const clicks = {
-      back: () => this.go(-1),
-      forth: () => this.go(1),
+      back: () => this.stepThroughDiagrams(-1),
+      forth: () => this.stepThroughDiagrams(1),
       whole: () => this.open(this.table.low, this.table.high),
       closer: () => this.open(middle() - 0.3 * half(), middle() + 0.3 * half()),
-      "run-on": () => inspector.runOn(),
+      "run-on": () => inspector.extendSection(),
       others: () => this.showOthers(),
-      link: () => this.copy(location.href, "link"),
-      "command-copy": () => this.copy(at("command").textContent ?? "", "command"),
-      "motion-command-copy": () => this.copy(at("motion-command").textContent ?? "", "command"),
+      link: () => this.copyText(location.href, "link"),
+      "command-copy": () => this.copyText(at("command").textContent ?? "", "command"),
+      "motion-command-copy": () => this.copyText(at("motion-command").textContent ?? "", "command"),
       reset: () => this.reset(),
     };
     for (const id in clicks) at(id).addEventListener("click", clicks[id]);
     at("direction").addEventListener("change", () => this.open(regions.diagram.low, regions.diagram.high));
-    at("branches").addEventListener("change", () => regions.view.refresh());
-    addEventListener("hashchange", () => this.restore(location.hash));
-    addEventListener("keydown", (event) => this.pressed(event));
+    at("branches").addEventListener("change", () => regions.view.redrawAll());
+    addEventListener("hashchange", () => this.openLink(location.hash));
+    addEventListener("keydown", (event) => this.actOnKey(event));
     document.querySelectorAll("button[data-save]").forEach((button) =>
-      button.addEventListener("click", () => this.tell(saveShown(/** @type {HTMLElement} */ (button).dataset.save ?? "", this))),
+      button.addEventListener("click", () => this.showStatus(saveShown(/** @type {HTMLElement} */ (button).dataset.save ?? "", this))),
     );
   }
 
   /** Keys that count wherever one is, but in a field. @param {KeyboardEvent} event */
-  pressed(event) {
+  actOnKey(event) {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const typing = event.target instanceof HTMLInputElement && event.target.type !== "range";
-    if (event.key.toLowerCase() === "s" && !typing && !(event.target instanceof HTMLSelectElement)) this.player.listen();
+    if (event.key.toLowerCase() === "s" && !typing && !(event.target instanceof HTMLSelectElement)) this.player.toggleSound();
   }
 
   /** A view from a link. @param {string} fragment */
-  restore(fragment) {
+  openLink(fragment) {
     const { table, usual } = this;
-    const stop = this.tour.follow(fragment);
+    const stop = this.tour.openStopOfLink(fragment);
     const paper = { ...usual, structure: table.usual, level: PAPER };
-    const view = viewOf(stop ?? fragment, stop === null ? usual : paper, table.ranges);
-    this.set(view.structure, view.level);
+    const view = viewFromLink(stop ?? fragment, stop === null ? usual : paper, table.ranges);
+    this.showBeam(view.structure, view.level);
     this.carried = false;
     input("direction").value = view.direction;
     this.regions.open(view.structure, view);
     const { name } = this.tour;
     // of a diagram that is still to come, the motion from rest
-    if (view.eta !== null) this.choose(view.eta, true, view.start ?? (this.known(view.eta) ? null : REST));
-    this.tour.show(name);
-    this.write();
+    if (view.eta !== null) this.choose(view.eta, true, view.start ?? (this.isStartKnown(view.eta) ? null : REST));
+    this.tour.markStop(name);
+    this.writeLink();
   }
 
   /** All as it was when the page was opened; what was seen is still behind Back. */
   reset() {
-    toDefault(input("branches"));
+    resetToDefault(input("branches"));
     this.player.reset();
     this.drive.reset();
     this.basin.reset();
-    this.restore(this.first);
-    this.refreshMotion();
+    this.openLink(this.first);
+    this.updateMotionTexts();
   }
 
   /** Whether it is known where the response at a frequency begins. @param {number} eta */
-  known(eta) {
+  isStartKnown(eta) {
     const { diagram } = this.regions;
-    return startAt(diagram.lanes[0], nearest(diagram, eta)) !== null;
+    return startOfResponse(diagram.lanes[0], nearestIndex(diagram, eta)) !== null;
   }
 
   /** @param {Structure} structure @param {Level} level */
-  set(structure, level) {
+  showBeam(structure, level) {
     Object.assign(this, { structure, level });
-    this.controls.show(structure, level);
-    this.shaking.show(structure, level);
+    this.controls.showStructure(structure, level);
+    this.shaking.showBeam(structure, level);
   }
 
   /** @param {number} low @param {number} high */
@@ -180,33 +180,33 @@ export class App {
   }
 
   /** @param {number} steps */
-  go(steps) {
-    this.regions.go(steps);
+  stepThroughDiagrams(steps) {
+    this.regions.stepThroughSeen(steps);
     const { diagram } = this.regions;
     input("direction").value = diagram.direction;
-    const other = !sameStructure(this.structure, diagram.structure) || !sameLevel(this.level, diagram.level);
-    this.set(diagram.structure, diagram.level);
-    if (other) this.carryOn();
+    const other = !isSameStructure(this.structure, diagram.structure) || !isSameLevel(this.level, diagram.level);
+    this.showBeam(diagram.structure, diagram.level);
+    if (other) this.continueMotion();
   }
 
   /** Other parameters: the diagram follows, the motion continues from where it was; frequencies stay, in Hz those in Hz once one was chosen there. @param {Structure} structure @param {Level} [level] */
-  change(structure, level = this.level) {
-    this.tour.leave();
-    const hertz = inHertz(level) && inHertz(this.level) && !this.carried;
+  changeBeam(structure, level = this.level) {
+    this.tour.unmarkStop();
+    const hertz = isInHertz(level) && isInHertz(this.level) && !this.carried;
     const held = hertz ? omegaOf(this.structure) / omegaOf(structure) : 1;
     this.eta *= held;
-    this.set(structure, level);
-    this.regions.follow(structure, level, held);
-    this.carryOn();
+    this.showBeam(structure, level);
+    this.regions.followParameters(structure, level, held);
+    this.continueMotion();
   }
 
   /** The chosen motion with the parameters of now. */
-  carryOn() {
+  continueMotion() {
     const { choice, found } = this.inspector;
     if (!Number.isFinite(this.eta)) return;
     const point = pointAt(this.structure, this.eta, this.level);
-    this.mark(point.eta);
-    this.inspect(point.eta, choice ? carried(found?.response.end ?? choice.start, choice.point, point) : REST);
+    this.markFrequency(point.eta);
+    this.inspect(point.eta, choice ? carryState(found?.response.end ?? choice.start, choice.point, point) : REST);
   }
 
   /** Choose a response: the nearest of the diagram, or exactly `eta`. @param {number} eta @param {boolean} [exactly] @param {number[] | null} [start] */
@@ -214,76 +214,76 @@ export class App {
     if (!(eta > 0)) return;
     this.carried = false;
     const { diagram } = this.regions;
-    const index = nearest(diagram, eta);
+    const index = nearestIndex(diagram, eta);
     const near = diagram.points[index];
     const point = exactly && Math.abs(near.eta - eta) > 1e-9 * eta ? pointAt(this.structure, eta, this.level) : near;
-    const there = startAt(diagram.lanes[0], index);
-    const known = start ?? (there && carried(there, near, point));
-    this.tour.leave();
-    this.mark(point.eta);
+    const there = startOfResponse(diagram.lanes[0], index);
+    const known = start ?? (there && carryState(there, near, point));
+    this.tour.unmarkStop();
+    this.markFrequency(point.eta);
     this.waiting = !known;
     if (known) this.inspect(point.eta, known);
     else {
-      this.inspector.expect();
-      this.tell("waits for the responses before it");
-      this.write();
+      this.inspector.awaitMotion();
+      this.showStatus("waits for the responses before it");
+      this.writeLink();
     }
   }
 
   /** @param {number} steps to the next frequencies of the diagram */
-  move(steps) {
+  moveChoice(steps) {
     const { points } = this.regions.diagram;
-    const from = Number.isFinite(this.eta) ? nearest(this.regions.diagram, this.eta) : Math.floor(points.length / 2);
+    const from = Number.isFinite(this.eta) ? nearestIndex(this.regions.diagram, this.eta) : Math.floor(points.length / 2);
     this.choose(points[Math.min(Math.max(from + steps, 0), points.length - 1)].eta);
   }
 
   /** @param {number} eta */
-  mark(eta) {
+  markFrequency(eta) {
     this.eta = eta;
     this.regions.view.marks.eta = eta;
     this.regions.view.picture.redraw();
-    this.shaking.mark(eta);
+    this.shaking.showFrequency(eta);
   }
 
   /** @param {number} eta @param {number[]} start */
   inspect(eta, start) {
     const { diagram } = this.regions;
-    const near = diagram.points[nearest(diagram, eta)];
-    const shownThere = near.eta === eta && sameStructure(near.structure, this.structure) && sameLevel(diagram.level, this.level);
+    const near = diagram.points[nearestIndex(diagram, eta)];
+    const shownThere = near.eta === eta && isSameStructure(near.structure, this.structure) && isSameLevel(diagram.level, this.level);
     const point = shownThere ? near : pointAt(this.structure, eta, this.level);
     const settings = diagram.settings.transient < USUAL.transient ? USUAL : diagram.settings;
-    this.basin.leave(point);
-    this.inspector.choose({ point, start, settings, level: this.level });
-    this.write();
+    this.basin.forgetOtherPoint(point);
+    this.inspector.showMotion({ point, start, settings, level: this.level });
+    this.writeLink();
   }
 
   /** The link of what is shown. */
-  write() {
+  writeLink() {
     const { low, high, direction } = this.regions.diagram;
     const { choice } = this.inspector;
     const eta = Number.isFinite(this.eta) ? this.eta : null;
     const start = choice && eta === choice.point.eta ? choice.start : null;
     const view = { structure: this.structure, level: this.level, low, high, direction, eta, start };
-    history.replaceState(null, "", fragmentOf(view, this.usual, this.tour.name));
+    history.replaceState(null, "", linkFragment(view, this.usual, this.tour.name));
   }
 
   /** Something of the diagram has come. */
-  refreshDiagram() {
+  updateDiagramTexts() {
     const { diagram, complete, place, seen } = this.regions;
     if (!diagram) return;
     const count = diagram.points.length * diagram.lanes.length;
     const ways = diagram.lanes.length > 1 ? ", up and down" : "";
-    this.tell(`${diagram.points.length} frequencies${ways}: ${complete ? `all computed${openingOf(diagram)}` : "computing …"}`);
+    this.showStatus(`${diagram.points.length} frequencies${ways}: ${complete ? `all computed${openingWords(diagram)}` : "computing …"}`);
     at("diagram").dataset.complete = String(complete);
     Object.assign(input("back"), { disabled: place <= 0 });
     Object.assign(input("forth"), { disabled: place >= seen.length - 1 });
-    this.shaking.reach(diagram.low, diagram.high);
-    if (Number.isFinite(this.eta)) this.shaking.mark(this.eta);
+    this.shaking.setSliderRange(diagram.low, diagram.high);
+    if (Number.isFinite(this.eta)) this.shaking.showFrequency(this.eta);
     at("command").textContent = diagramCommand(diagram, this.table.usual);
-    const [low, high] = [diagram.low, diagram.high].map((eta) => eta * frequencyUnit(diagram.structure, diagram.level));
-    this.regions.view.picture.describe(`Orbit diagram, gap over ${wordsOf(diagram.level).frequency.replace(", ", " in ")} from ${shown(low, 6)} to ${shown(high, 6)}, ${count} responses. Arrow keys choose a frequency, plus and minus zoom, b and f go back and forth.`);
-    this.write();
-    this.hint();
+    const [low, high] = [diagram.low, diagram.high].map((eta) => eta * ratioUnit(diagram.structure, diagram.level));
+    this.regions.view.picture.describe(`Orbit diagram, gap over ${axisWords(diagram.level).frequency.replace(", ", " in ")} from ${formatNumber(low, 6)} to ${formatNumber(high, 6)}, ${count} responses. Arrow keys choose a frequency, plus and minus zoom, b and f go back and forth.`);
+    this.writeLink();
+    this.showHint();
     if (complete && this.waiting && !this.regions.quick) {
       this.waiting = false;
       this.choose(this.eta, true);
@@ -291,28 +291,28 @@ export class App {
   }
 
   /** The motion has come. */
-  refreshMotion() {
+  updateMotionTexts() {
     const { choice, found, periods } = this.inspector;
-    this.player.refresh();
+    this.player.updateButtons();
     if (!choice) return;
     const { transient, samples } = choice.settings;
     const asked = { transient: transient + samples, periods, points: 200 };
     at("motion-command").textContent = motionCommand(choice.point, choice.start, asked, this.table.usual) + unitsOption(choice.level);
     at("motion").dataset.eta = String(choice.point.eta);
-    if (found && !this.basin.shown) this.basin.meet(choice, found.response);
+    if (found && !this.basin.shown) this.basin.setShownMotion(choice, found.response);
     if (this.basin.visible) this.computeBasin();
   }
 
   /** Say so where other motions are known at this frequency. */
-  hint() {
-    const words = this.basin.hint();
+  showHint() {
+    const words = this.basin.hintWords();
     if (words) at("hint").textContent = words;
     at("hint").classList.toggle("absent", !words);
   }
 
   computeBasin() {
     const { found, choice } = this.inspector;
-    if (found && choice) this.basin.compute(choice, found.response);
+    if (found && choice) this.basin.computeMap(choice, found.response);
   }
 
   showOthers() {
@@ -321,15 +321,15 @@ export class App {
   }
 
   /** @param {string} text @param {string} what */
-  copy(text, what) {
+  copyText(text, what) {
     navigator.clipboard?.writeText(text).then(
-      () => this.tell(`${what} copied`),
-      () => this.tell(`${what}: ${text}`),
+      () => this.showStatus(`${what} copied`),
+      () => this.showStatus(`${what}: ${text}`),
     );
   }
 
   /** @param {string} text */
-  tell(text) {
+  showStatus(text) {
     at("status").textContent = text;
   }
 }

@@ -1,7 +1,7 @@
 /** Basins of attraction: where starts on a plane of gap and gap velocity lead to. */
 
-import { distanceOf, traitsOf } from "./model.js";
-import { periodsOf, REPEATED, respond, UNDECIDED } from "./response.js";
+import { distanceToState, traitsOf } from "./model.js";
+import { repeatPeriods, REPEATED, computeResponse, UNDECIDED } from "./response.js";
 import { lengthOf, omegaOf } from "./structure.js";
 
 /**
@@ -14,7 +14,7 @@ export const SETTLING = { transient: 300, samples: 64, tolerance: 1e-2 };
 const LONGEST = 6000; // periods after which what is undecided stays so
 
 /** The start at a cell of a plane. @param {Point} point @param {Plane} plane @param {number} column @param {number} row */
-export function startAt(point, plane, column, row) {
+export function startOfCell(point, plane, column, row) {
   const length = lengthOf(point);
   const gap = ((column + 0.5) / plane.side) * plane.gap * length - traitsOf(point).gap_offset;
   const speed = ((2 * (row + 0.5)) / plane.side - 1) * plane.speed * length * omegaOf(point.structure);
@@ -30,10 +30,10 @@ export function startAt(point, plane, column, row) {
  * @param {number[]} start
  * @returns {Generator<undefined, Attractor>} it pauses, so that the instance may do other things
  */
-export function* destination(instance, point, start) {
-  let found = yield* respond(instance, point, start, SETTLING);
+export function* followToAttractor(instance, point, start) {
+  let found = yield* computeResponse(instance, point, start, SETTLING);
   for (let done = SETTLING.transient + SETTLING.samples; found.decided === UNDECIDED && done < LONGEST; ) {
-    found = yield* respond(instance, point, found.end, { ...SETTLING, transient: done });
+    found = yield* computeResponse(instance, point, found.end, { ...SETTLING, transient: done });
     done += done + SETTLING.samples;
   }
   return attractorOf(found, point);
@@ -47,24 +47,24 @@ export function* destination(instance, point, start) {
  * @param {Attractor} one
  * @param {number} tolerance
  */
-export function label(known, one, tolerance) {
-  const place = placeOf(known, one, tolerance);
+export function addOrFindAttractor(known, one, tolerance) {
+  const place = findAttractor(known, one, tolerance);
   return place >= 0 ? place : known.push(one) - 1;
 }
 
 /** Number of an attractor among those known; −1 where it is new. @param {Attractor[]} known @param {Attractor} one @param {number} tolerance */
-export function placeOf(known, one, tolerance) {
+export function findAttractor(known, one, tolerance) {
   return known.findIndex(
     (other) =>
       other.decided === one.decided &&
-      periodsOf(other) === periodsOf(one) &&
-      (one.decided !== REPEATED || distanceOf(other.samples, other.frequency, other.gap, one.samples.slice(-4)) < tolerance),
+      repeatPeriods(other) === repeatPeriods(one) &&
+      (one.decided !== REPEATED || distanceToState(other.samples, other.frequency, other.gap, one.samples.slice(-4)) < tolerance),
   );
 }
 
 /** Whether a motion is another one than the one that is shown: both are decided. @param {Attractor} shown @param {Attractor} one @param {number} tolerance */
-export function isOther(shown, one, tolerance) {
-  return [shown, one].every(({ decided }) => decided !== UNDECIDED) && placeOf([shown], one, tolerance) < 0;
+export function isOtherAttractor(shown, one, tolerance) {
+  return [shown, one].every(({ decided }) => decided !== UNDECIDED) && findAttractor([shown], one, tolerance) < 0;
 }
 
 /** What a response is to the picture. @param {import("./response.js").Response} response @param {Point} point @returns {Attractor} */

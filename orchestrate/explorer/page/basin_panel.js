@@ -1,8 +1,8 @@
 /** Other motions at the chosen frequency: where a plane of starts leads to, asked of all workers. */
 
-import { attractorOf, isOther, label } from "./basin.js";
-import { BasinView, coarseFirst } from "./basin_view.js";
-import { shares } from "./requests.js";
+import { attractorOf, isOtherAttractor, addOrFindAttractor } from "./basin.js";
+import { BasinView, cellsCoarseFirst } from "./basin_view.js";
+import { dealOut } from "./requests.js";
 import { lengthOf } from "./structure.js";
 
 const SIDE = 64; // cells
@@ -45,7 +45,7 @@ export class BasinPanel {
   }
 
   /** Nothing is known of another point. @param {Point} point */
-  leave(point) {
+  forgetOtherPoint(point) {
     this.trial?.cancel();
     this.trial = null;
     if (!this.tried) this.few = [];
@@ -54,49 +54,49 @@ export class BasinPanel {
     const text = JSON.stringify(point);
     if (this.about === text) return;
     this.about = text;
-    this.forget();
+    this.forgetAttractors();
   }
 
   /** As when the page was opened. */
   reset() {
     this.wanted = false;
     this.at("basin-map").hidden = true;
-    this.forget();
+    this.forgetAttractors();
   }
 
   /** Nothing is known. */
-  forget() {
+  forgetAttractors() {
     this.order?.cancel();
     this.point = "";
     this.few = [];
     this.tried = false;
-    this.view.clear();
+    this.view.clearMap();
     this.at("basins").replaceChildren();
     this.told();
   }
 
   /** Whether a motion is known to which the one that is shown is another. */
-  get others() {
+  get hasOtherMotions() {
     const { shown } = this;
-    return shown !== null && [...this.view.attractors, ...this.few].some((one) => isOther(shown, one, this.alike));
+    return shown !== null && [...this.view.attractors, ...this.few].some((one) => isOtherAttractor(shown, one, this.alike));
   }
 
   /** What is known of other motions. */
-  hint() {
+  hintWords() {
     const complete = Boolean(this.point) && this.at("basins").dataset.complete === "true";
-    if (this.others) return complete ? "Other motions: the coloured map." : "There is another motion.";
+    if (this.hasOtherMotions) return complete ? "Other motions: the coloured map." : "There is another motion.";
     return complete ? `No other motion from ${SIDE * SIDE} starts.` : "";
   }
 
   /** A motion is shown: mark it, and try a few starts. @param {Choice} choice @param {import("./response.js").Response} response */
-  meet({ point }, response) {
+  setShownMotion({ point }, response) {
     this.shown = attractorOf(response, point);
-    if (this.point) this.tell(this.at("basins").dataset.complete === "true");
+    if (this.point) this.listAttractors(this.at("basins").dataset.complete === "true");
     this.told();
     if (this.point || this.few.length) return;
     const cells = FEW.flatMap((column) => FEW.map((row) => [column, row]));
-    const trial = this.pool.ask("basin", { point, plane: planeOf(point, response), cells }, (parts) => {
-      for (const part of parts) label(this.few, part, this.alike);
+    const trial = this.pool.ask("basin", { point, plane: planeAround(point, response), cells }, (parts) => {
+      for (const part of parts) addOrFindAttractor(this.few, part, this.alike);
       this.told();
     });
     this.trial = trial;
@@ -108,26 +108,26 @@ export class BasinPanel {
   }
 
   /** Unless it is there. @param {Choice} choice @param {import("./response.js").Response} response */
-  compute({ point, level }, response) {
+  computeMap({ point, level }, response) {
     if (!this.wanted || this.point === JSON.stringify(point)) return;
     this.order?.cancel();
     this.point = JSON.stringify(point);
-    const plane = planeOf(point, response);
-    this.view.begin(point, plane, level);
-    const asked = shares(coarseFirst(SIDE), this.pool.workers.length).map((cells) => ({ point, plane, cells }));
+    const plane = planeAround(point, response);
+    this.view.startMap(point, plane, level);
+    const asked = dealOut(cellsCoarseFirst(SIDE), this.pool.workers.length).map((cells) => ({ point, plane, cells }));
     const order = this.pool.askAll("basin", asked, (parts) => {
-      parts.forEach((part) => this.view.take(part));
-      this.tell(false);
+      parts.forEach((part) => this.view.addCell(part));
+      this.listAttractors(false);
     });
     this.order = order;
     this.at("basins").dataset.complete = "false";
-    void order.done.then(() => this.order === order && this.tell(true));
+    void order.done.then(() => this.order === order && this.listAttractors(true));
   }
 
   /** @param {boolean} complete */
-  tell(complete) {
+  listAttractors(complete) {
     const list = this.at("basins");
-    const words = this.view.words(this.shown);
+    const words = this.view.attractorWords(this.shown);
     list.replaceChildren(
       ...words.map(({ colour, text, now, start }) => {
         const [row, key, go] = ["li", "span", "button"].map((tag) => document.createElement(tag));
@@ -136,7 +136,7 @@ export class BasinPanel {
         go.textContent = "Show";
         go.ariaLabel = `show: ${text}`;
         go.addEventListener("click", () => this.choose(start));
-        row.append(key, tagged(text), now ? shownNow() : go);
+        row.append(key, spanWith(text), now ? shownNowLabel() : go);
         return row;
       }),
     );
@@ -148,16 +148,16 @@ export class BasinPanel {
 }
 
 /** @param {string} text */
-const tagged = (text) => Object.assign(document.createElement("span"), { textContent: text });
+const spanWith = (text) => Object.assign(document.createElement("span"), { textContent: text });
 
 /** In place of a button. */
-function shownNow() {
+function shownNowLabel() {
   const words = document.createElement("span");
   return Object.assign(words, { className: "now", textContent: "shown now" });
 }
 
 /** The plane of starts around a response. @param {Point} point @param {import("./response.js").Response} response @returns {Plane} */
-function planeOf(point, { peak, end }) {
+function planeAround(point, { peak, end }) {
   const { eta, structure } = point;
   const reach = Math.max(peak, 1e-3) * 3;
   const gap = structure.stroke ? Math.min(reach, structure.stroke / lengthOf(point)) : reach;

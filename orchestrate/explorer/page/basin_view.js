@@ -1,19 +1,19 @@
 /** The basin of attraction as a picture that fills in, coarse first; a click starts there. */
 
-import { label, placeOf, SETTLING, startAt } from "./basin.js";
-import { drawFrame, areaOf } from "./chart.js";
-import { inHertz, PAPER } from "./excitation.js";
+import { addOrFindAttractor, findAttractor, SETTLING, startOfCell } from "./basin.js";
+import { drawFrame, plottingArea } from "./chart.js";
+import { isInHertz, PAPER } from "./excitation.js";
 import { Picture } from "./picture.js";
-import { averageWords, meanCountOf, repeatWords } from "./response_words.js";
-import { periodsOf } from "./response.js";
+import { averageWords, meanImpactCountWords, repeatWords } from "./response_words.js";
+import { repeatPeriods } from "./response.js";
 import { omegaOf } from "./structure.js";
-import { channels } from "./theme.js";
-import { gapUnit, wordsOf } from "./units.js";
+import { rgbOf } from "./theme.js";
+import { gapUnit, axisWords } from "./units.js";
 
 const COLOURS = ["#5b8ff9", "#e8a33d", "#5ad8a6", "#d9468f", "#9270ca", "#7a7a7a"];
 
 /** Cells of a square, coarse ones first. @param {number} side @returns {[number, number][]} */
-export function coarseFirst(side) {
+export function cellsCoarseFirst(side) {
   /** @type {[number, number][]} */
   const cells = [];
   for (let step = 8; step >= 1; step /= 2) {
@@ -47,7 +47,7 @@ export class BasinView {
     this.cursor = null;
     /** @param {[number, number] | null} cell */
     const start = (cell) => {
-      if (cell && this.plane && this.point) choose(startAt(this.point, this.plane, ...cell));
+      if (cell && this.plane && this.point) choose(startOfCell(this.point, this.plane, ...cell));
     };
     canvas.addEventListener("click", (event) => {
       this.cursor = this.cellAt(event.offsetX, event.offsetY);
@@ -55,13 +55,13 @@ export class BasinView {
     });
     canvas.addEventListener("keydown", (event) => {
       if (event.key === "Enter") start(this.cursor);
-      else if (!this.move(event.key)) return;
+      else if (!this.moveCursor(event.key)) return;
       event.preventDefault();
     });
   }
 
   /** Move the cursor by a key; whether it was one that does. @param {string} key */
-  move(key) {
+  moveCursor(key) {
     /** @type {Record<string, [number, number]>} */
     const ways = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
     if (!ways[key] || !this.plane) return false;
@@ -74,13 +74,13 @@ export class BasinView {
   }
 
   /** Nothing to show. */
-  clear() {
+  clearMap() {
     Object.assign(this, { plane: null, cursor: null, attractors: [], examples: [] });
     this.picture.redraw();
   }
 
   /** @param {Point} point @param {Plane} plane @param {Level} level */
-  begin(point, plane, level) {
+  startMap(point, plane, level) {
     this.level = level;
     Object.assign(this, { point, plane, attractors: [], examples: [] });
     this.labels = new Int16Array(plane.side * plane.side).fill(-1);
@@ -89,35 +89,35 @@ export class BasinView {
   }
 
   /** @param {{column: number, row: number} & Attractor} part */
-  take({ column, row, ...found }) {
+  addCell({ column, row, ...found }) {
     if (!this.plane) return;
-    const number = label(this.attractors, found, this.alike);
+    const number = addOrFindAttractor(this.attractors, found, this.alike);
     this.labels[row * this.plane.side + column] = number;
     this.examples[number] ??= [column, row];
     this.picture.redraw();
   }
 
   /** What was found in words, and a start that leads to each. @param {Attractor | null} shown the motion on the page */
-  words(shown) {
+  attractorWords(shown) {
     const { point, plane } = this;
     if (!point || !plane) return [];
     const total = this.labels.reduce((sum, one) => sum + (one >= 0 ? 1 : 0), 0) || 1;
-    const now = shown ? placeOf(this.attractors, shown, this.alike) : -1;
+    const now = shown ? findAttractor(this.attractors, shown, this.alike) : -1;
     return this.attractors.map((one, number) => {
       const { impacts } = one;
-      const periods = periodsOf(one);
+      const periods = repeatPeriods(one);
       const share = this.labels.reduce((sum, one) => sum + (one === number ? 1 : 0), 0) / total;
       const kind = periods ? `repeats after ${repeatWords(one)}` : repeatWords(one);
       const worth = periods ? "" : ` (${averageWords(SETTLING.samples)})`;
-      const text = `${kind}, ${meanCountOf(impacts, periods)}${worth}: ${(100 * share).toFixed(1)} % of starts`;
-      return { colour: colourOf(number), text, now: number === now, start: startAt(point, plane, ...this.examples[number]) };
+      const text = `${kind}, ${meanImpactCountWords(impacts, periods)}${worth}: ${(100 * share).toFixed(1)} % of starts`;
+      return { colour: attractorColour(number), text, now: number === now, start: startOfCell(point, plane, ...this.examples[number]) };
     });
   }
 
   /** @param {number} x @param {number} y @returns {[number, number] | null} */
   cellAt(x, y) {
     if (!this.plane) return null;
-    const [left, top, width, height] = areaOf(this.picture.size);
+    const [left, top, width, height] = plottingArea(this.picture.size);
     const column = Math.floor(((x - left) / width) * this.plane.side);
     const row = Math.floor((1 - (y - top) / height) * this.plane.side);
     const inside = [column, row].every((index) => index >= 0 && index < (this.plane?.side ?? 0));
@@ -126,7 +126,7 @@ export class BasinView {
 
   /** @param {Pen} pen @param {Size} size @param {Theme} theme */
   draw(pen, size, theme) {
-    const place = areaOf(size);
+    const place = plottingArea(size);
     const { plane } = this;
     if (!plane || !this.point) return;
     this.paintCells(plane.side);
@@ -138,8 +138,8 @@ export class BasinView {
       const corner = [left + column * cell, top + height - (row + 1) * tall];
       pen.box(corner[0] - 2, corner[1] - 2, cell + 4, tall + 4, { stroke: theme.ink, width: 2 });
     }
-    const [words, unit] = [wordsOf(this.level), gapUnit(this.point, this.level)];
-    const speed = plane.speed * unit * (inHertz(this.level) ? omegaOf(this.point.structure) : 1);
+    const [words, unit] = [axisWords(this.level), gapUnit(this.point, this.level)];
+    const speed = plane.speed * unit * (isInHertz(this.level) ? omegaOf(this.point.structure) : 1);
     const x = { low: 0, high: plane.gap * unit, label: `${words.gap}, at the start` };
     drawFrame(pen, place, { ...theme, grid: "transparent" }, x, { low: -speed, high: speed, label: words.gapSpeed });
   }
@@ -150,17 +150,17 @@ export class BasinView {
     const image = context.createImageData(side, side);
     for (let row = 0; row < side; row++) {
       for (let column = 0; column < side; column++) {
-        const found = this.labelNear(column, row, side);
+        const found = this.coarserLabel(column, row, side);
         if (found < 0) continue;
         const place = 4 * ((side - 1 - row) * side + column);
-        image.data.set([...channels(colourOf(found)), 255], place);
+        image.data.set([...rgbOf(attractorColour(found)), 255], place);
       }
     }
     context.putImageData(image, 0, 0);
   }
 
   /** @param {number} column @param {number} row @param {number} side */
-  labelNear(column, row, side) {
+  coarserLabel(column, row, side) {
     for (let step = 1; step <= 8; step *= 2) {
       const found = this.labels[(row - (row % step)) * side + column - (column % step)];
       if (found >= 0) return found;
@@ -170,6 +170,6 @@ export class BasinView {
 }
 
 /** @param {number} number */
-function colourOf(number) {
+function attractorColour(number) {
   return COLOURS[Math.min(number, COLOURS.length - 1)];
 }

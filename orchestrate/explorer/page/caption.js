@@ -1,9 +1,9 @@
 /** What stands below a saved picture: what it shows, of which beam, made by what. */
 
-import { inHertz } from "./excitation.js";
-import { shown } from "./scale.js";
-import { numbersIn } from "./structure.js";
-import { frequencyName, levelShown, ownUnit, scaleAt } from "./units.js";
+import { isInHertz } from "./excitation.js";
+import { formatNumber } from "./scale.js";
+import { fieldNumbers } from "./structure.js";
+import { frequencyName, levelInShownUnit, shownUnit, axisScale } from "./units.js";
 
 const SIZE = 11; // px of a letter
 const LINE = 16; // px
@@ -22,25 +22,25 @@ const LOADS = {
 export function beamWords(point, level) {
   const { structure, eta } = point;
   const kind = structure.wall ? "One mass before a wall" : "Delaminated beam";
-  const more = Object.entries(LOADS).map(([name, text]) => (numbersIn(structure)[name] ? `, ${text(shown(numbersIn(structure)[name]))}` : "")).join("");
-  const { e, mu, kappa, D, xi0, f1, f2, mass1, mass2, zeta, gap } = numbersIn(structure);
-  if (!inHertz(level)) {
-    const halves = structure.wall ? "" : `, μ = ${shown(mu)}, κ = ${shown(kappa)}`;
-    return `${kind}: e = ${shown(e)}${halves}, D = ${shown(D)}, ξ₀ = ${shown(xi0)}${more}; η = ${shown(eta, 7)}`;
+  const more = Object.entries(LOADS).map(([name, text]) => (fieldNumbers(structure)[name] ? `, ${text(formatNumber(fieldNumbers(structure)[name]))}` : "")).join("");
+  const { e, mu, kappa, D, xi0, f1, f2, mass1, mass2, zeta, gap } = fieldNumbers(structure);
+  if (!isInHertz(level)) {
+    const halves = structure.wall ? "" : `, μ = ${formatNumber(mu)}, κ = ${formatNumber(kappa)}`;
+    return `${kind}: e = ${formatNumber(e)}${halves}, D = ${formatNumber(D)}, ξ₀ = ${formatNumber(xi0)}${more}; η = ${formatNumber(eta, 7)}`;
   }
-  const [turns, lengths] = [ownUnit("frequency"), ownUnit("length")];
+  const [turns, lengths] = [shownUnit("frequency"), shownUnit("length")];
   const halves = structure.wall
-    ? `${shown(f1 / turns.size)} ${turns.name}, ${shown(mass1)} kg`
-    : `halves of ${shown(f1 / turns.size)} and ${shown(f2 / turns.size)} ${turns.name}, ${shown(mass1)} and ${shown(mass2)} kg`;
-  const shaken = `${frequencyText(scaleAt(point, level).line)}, ${levelShown(level).text}`;
-  return `${kind}: ${halves}, damping ${shown(zeta)} %, gap ${shown(gap / lengths.size)} ${lengths.name}, e = ${shown(e)}${more}; shaken at ${shaken}`;
+    ? `${formatNumber(f1 / turns.size)} ${turns.name}, ${formatNumber(mass1)} kg`
+    : `halves of ${formatNumber(f1 / turns.size)} and ${formatNumber(f2 / turns.size)} ${turns.name}, ${formatNumber(mass1)} and ${formatNumber(mass2)} kg`;
+  const shaken = `${frequencyText(axisScale(point, level).line)}, ${levelInShownUnit(level).text}`;
+  return `${kind}: ${halves}, damping ${formatNumber(zeta)} %, gap ${formatNumber(gap / lengths.size)} ${lengths.name}, e = ${formatNumber(e)}${more}; shaken at ${shaken}`;
 }
 
 /** @param {number} value of the axis */
-const frequencyText = (value) => (frequencyName().startsWith("ratio") ? `η = ${shown(value, 6)}` : `${shown(value, 6)} ${frequencyName()}`);
+const frequencyText = (value) => (frequencyName().startsWith("ratio") ? `η = ${formatNumber(value, 6)}` : `${formatNumber(value, 6)} ${frequencyName()}`);
 
 /** Texts in lines that fit. @param {string[]} texts @param {number} width px */
-export function wrapped(texts, width) {
+export function wrapLines(texts, width) {
   const most = Math.max(20, Math.floor((width - 2 * LEFT) / LETTER));
   return texts.flatMap((text) => {
     const lines = [""];
@@ -54,7 +54,7 @@ export function wrapped(texts, width) {
 }
 
 /** @param {string[]} lines */
-export const heightOf = (lines) => LINE * lines.length + LINE / 2;
+export const captionHeight = (lines) => LINE * lines.length + LINE / 2;
 
 /** @param {Pen} pen @param {string[]} lines @param {number} top @param {Theme} theme */
 export function drawCaption(pen, lines, top, theme) {

@@ -1,6 +1,6 @@
 /** Line charts: a frame with ticks, lines, dots, and shaded spans. */
 
-import { scaleOf, shown, tickText, ticksOf } from "./scale.js";
+import { axisToPixels, formatNumber, tickText, axisTicks } from "./scale.js";
 
 /**
  * @typedef {{x: ArrayLike<number>, y: ArrayLike<number>, colour: keyof Theme, dots?: number,
@@ -14,22 +14,22 @@ const CONTACT = "stuck together"; // what the spans are
 const MARGIN = { left: 72, right: 18, top: 20, bottom: 38 };
 
 /** The plotting area of a picture. @param {Size} size @returns {Place} */
-export function areaOf({ width, height }) {
+export function plottingArea({ width, height }) {
   const { left, right, top, bottom } = MARGIN;
   return [left, top, Math.max(width - left - right, 10), Math.max(height - top - bottom, 10)];
 }
 
 /** @param {Pen} pen @param {Size} size @param {Theme} theme @param {Chart} chart */
 export function drawChart(pen, size, theme, chart) {
-  const place = areaOf(size);
+  const place = plottingArea(size);
   const [left, top, width, height] = place;
-  const px = scaleOf(chart.x, left, left + width);
-  const py = scaleOf(chart.y, top + height, top);
+  const px = axisToPixels(chart.x, left, left + width);
+  const py = axisToPixels(chart.y, top + height, top);
   for (const [from, to] of chart.spans ?? []) {
     pen.box(px(from), top, Math.max(px(to) - px(from), 0.5), height, { fill: theme.contact });
   }
   drawFrame(pen, place, theme, chart.x, chart.y);
-  pen.inside(place, () => chart.series.forEach((series) => drawSeries(pen, series, px, py, theme)));
+  pen.drawClipped(place, () => chart.series.forEach((series) => drawSeries(pen, series, px, py, theme)));
   drawLegend(pen, place, theme, chart);
 }
 
@@ -66,14 +66,14 @@ function drawLegend(pen, [left, top, width], theme, { series, spans }) {
  * @param {number} [strip]
  */
 export function drawFrame(pen, [left, top, width, height], theme, x, y, strip = 0) {
-  const px = scaleOf(x, left, left + width);
-  const py = scaleOf(y, top + height, top);
+  const px = axisToPixels(x, left, left + width);
+  const py = axisToPixels(y, top + height, top);
   const [right, bottom] = [left + width, top + height];
-  for (const tick of ticksOf(x, width / 64)) {
+  for (const tick of axisTicks(x, width / 64)) {
     pen.line([px(tick), px(tick)], [top, bottom], { stroke: theme.grid });
-    if (x.label !== undefined) pen.text(px(tick), bottom + strip + 12, shown(tick, 6), { fill: theme.soft });
+    if (x.label !== undefined) pen.text(px(tick), bottom + strip + 12, formatNumber(tick, 6), { fill: theme.soft });
   }
-  for (const tick of ticksOf(y, height / (y.log ? 24 : 30))) {
+  for (const tick of axisTicks(y, height / (y.log ? 24 : 30))) {
     pen.line([left, right], [py(tick), py(tick)], { stroke: theme.grid });
     pen.text(left - 6, py(tick), tickText(tick, y), { anchor: "end", fill: theme.soft });
   }

@@ -1,6 +1,6 @@
 /** The commands that compute what the page shows, each to be pasted into a shell. */
 
-import { givenHertz, GRAVITY } from "./excitation.js";
+import { hertzAsGiven, GRAVITY } from "./excitation.js";
 import { omegaOf } from "./structure.js";
 import { unitsOption } from "./units.js";
 
@@ -11,35 +11,35 @@ const FLAGS = ["bonded", "wall"];
 const PUSHES = ["box_acceleration", "force1", "force2"]; // of the excitation
 
 /** `--set NAME=VALUE`, or an option of the excitation, for what is not usual. @param {Structure} structure @param {Structure} usual */
-function sets(structure, usual) {
+function setOptions(structure, usual) {
   /** @param {[string, number]} one */
   const option = ([name, value]) => (PUSHES.includes(name) ? ` --${name.replace("_", "-")}=${value}` : ` --set ${name}=${FLAGS.includes(name) ? value === 1 : value}`);
-  return differences(structure, usual).map(option).join("");
+  return changedParameters(structure, usual).map(option).join("");
 }
 
 /** @param {Structure} structure @param {Structure} usual @returns {[string, number][]} */
-function differences(structure, usual) {
+function changedParameters(structure, usual) {
   return Object.entries(structure).filter(([name, value]) => value !== usual[/** @type {keyof Structure} */ (name)]);
 }
 
 /** The diagram: a line, or one for each direction where they begin from other states than rest. @param {Diagram} diagram @param {Structure} usual */
 export function diagramCommand(diagram, usual) {
   const { structure, direction, points, settings, lanes, level } = diagram;
-  const starts = lanes.map(startOf);
-  const how = `--transient ${settings.transient} --samples ${settings.samples}${sets(structure, usual)}${unitsOption(level)}`;
+  const starts = lanes.map(startOption);
+  const how = `--transient ${settings.transient} --samples ${settings.samples}${setOptions(structure, usual)}${unitsOption(level)}`;
   const options = rangeOptions(points) || listOptions(points);
   if (options && starts.every(isRest)) return `${PROGRAM} sweep ${options} --direction ${direction} ${how}`;
   /** @param {number[]} start */
   const from = (start) => (isRest(start) ? "" : ` --start=${start.join(",")}`);
   return lanes
     .map(({ direction: way }, i) =>
-      options ? `${PROGRAM} sweep ${options} --direction ${way}${from(starts[i])} ${how}` : script(diagram, way, starts[i], usual),
+      options ? `${PROGRAM} sweep ${options} --direction ${way}${from(starts[i])} ${how}` : pythonScript(diagram, way, starts[i], usual),
     )
     .join("\n");
 }
 
 /** Where the first response of a direction begins. @param {Lane} lane */
-function startOf({ from, starts, direction }) {
+function startOption({ from, starts, direction }) {
   if (from || !starts) return from ?? REST;
   const place = direction === "up" ? 0 : starts.length - 4;
   return Array.from(starts.subarray(place, place + 4));
@@ -49,8 +49,8 @@ function startOf({ from, starts, direction }) {
 const isRest = (start) => start.every((value) => value === 0);
 
 /** An excitation that the command line cannot say, as a line of Python. @param {Diagram} diagram @param {string} direction @param {number[]} start @param {Structure} usual */
-function script({ structure, points, settings }, direction, start, usual) {
-  const given = differences(structure, usual).map(([name, value]) => [name, `${name}=${FLAGS.includes(name) ? (value ? "True" : "False") : value}`]);
+function pythonScript({ structure, points, settings }, direction, start, usual) {
+  const given = changedParameters(structure, usual).map(([name, value]) => [name, `${name}=${FLAGS.includes(name) ? (value ? "True" : "False") : value}`]);
   /** @param {boolean} pushes */
   const some = (pushes) => given.flatMap(([name, text]) => (PUSHES.includes(name) === pushes ? [text] : [])).join(", ");
   /** @param {"frequency" | "amplitude"} name */
@@ -63,16 +63,16 @@ function script({ structure, points, settings }, direction, start, usual) {
 
 /** An excitation at the command line, where a range says it to the last bit; else nothing. @param {Point[]} points */
 function rangeOptions(points) {
-  if (points.every(isPlain)) return rangeOf("--eta", points.map(({ eta }) => eta), (eta) => eta);
+  if (points.every(isPaperExcitation)) return rangeOption("--eta", points.map(({ eta }) => eta), (eta) => eta);
   const turns = points.map(({ frequency }) => frequency);
-  const range = rangeOf("--hz", turns, (hz) => 2 * Math.PI * hz) || rangeOf("--frequency", turns, (value) => value);
+  const range = rangeOption("--hz", turns, (hz) => 2 * Math.PI * hz) || rangeOption("--frequency", turns, (value) => value);
   const level = levelOption(points);
   return range && level && `${range} ${level}`;
 }
 
 /** The same as a list. @param {Point[]} points */
 function listOptions(points) {
-  if (points.every(isPlain)) return `--eta ${points.map(({ eta }) => eta).join(",")}`;
+  if (points.every(isPaperExcitation)) return `--eta ${points.map(({ eta }) => eta).join(",")}`;
   const level = levelOption(points);
   return level && `--frequency ${points.map(({ frequency }) => frequency).join(",")} ${level}`;
 }
@@ -87,7 +87,7 @@ function levelOption(points) {
 }
 
 /** Values as a range of decimal numbers; nothing if they are not. @param {string} option @param {number[]} values @param {(value: number) => number} of what the option's number becomes */
-function rangeOf(option, values, of) {
+function rangeOption(option, values, of) {
   const decimals = values.map((value) => Number((value / of(1)).toFixed(9)));
   const [first, last] = [decimals[0], decimals[decimals.length - 1]];
   const step = Number((decimals.length > 1 ? (last - first) / (decimals.length - 1) : 1).toPrecision(9));
@@ -96,22 +96,22 @@ function rangeOf(option, values, of) {
 }
 
 /** Whether an excitation is given by the frequency ratio alone. @param {Point} point */
-function isPlain({ eta, amplitude }) {
+function isPaperExcitation({ eta, amplitude }) {
   return amplitude === 1 / (eta * eta);
 }
 
 /** The motion that continues a response. @param {Point} point @param {number[]} start @param {{transient: number, periods: number, points: number}} asked @param {Structure} usual */
 export function motionCommand(point, start, { transient, periods, points }, usual) {
   const how = `--transient ${transient} --periods ${periods} --points ${points}`;
-  return `${PROGRAM} simulate ${where(point)} ${how} --start=${start.join(",")}${sets(point.structure, usual)}`;
+  return `${PROGRAM} simulate ${excitationOptions(point)} ${how} --start=${start.join(",")}${setOptions(point.structure, usual)}`;
 }
 
 /** The excitation of one motion. @param {Point} point */
-function where(point) {
+function excitationOptions(point) {
   const { eta, frequency, amplitude, structure } = point;
   // 1/eta^2 m says something of a structure of 1 rad/s only
-  if (isPlain(point) && Math.abs(omegaOf(structure) - 1) < 1e-9) return `--eta ${eta}`;
-  const hertz = givenHertz(point);
+  if (isPaperExcitation(point) && Math.abs(omegaOf(structure) - 1) < 1e-9) return `--eta ${eta}`;
+  const hertz = hertzAsGiven(point);
   const turns = 2 * Math.PI * hertz === frequency ? `--hz ${hertz}` : `--frequency ${frequency}`;
   const level = Number(((amplitude * frequency * frequency) / GRAVITY).toPrecision(9));
   const held = amplitude === (level * GRAVITY) / (frequency * frequency);

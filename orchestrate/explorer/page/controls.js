@@ -1,9 +1,9 @@
 /** Sliders with a number next to each: the paper's parameters, or those of a beam of one's own, and the SI numbers. */
 
-import { inHertz } from "./excitation.js";
-import { onNumber, showNumber } from "./field.js";
-import { numbersIn, withNumber, wrongIn } from "./structure.js";
-import { ownUnit } from "./units.js";
+import { isInHertz } from "./excitation.js";
+import { watchNumber, showNumber } from "./field.js";
+import { fieldNumbers, withNumber, contradictionIn } from "./structure.js";
+import { shownUnit } from "./units.js";
 
 /**
  * @typedef {[name: string, label: string, low: number, high: number, step?: number]} Entry
@@ -44,13 +44,13 @@ const DIGITS = 7;
 const KINDS = { f1: "frequency", f2: "frequency", gap: "length", most: "length" };
 
 /** How many Hz or mm the unit of a field is. @param {string} name */
-const sizeOf = (name) => (name in KINDS ? ownUnit(KINDS[name]).size : 1);
+const unitSize = (name) => (name in KINDS ? shownUnit(KINDS[name]).size : 1);
 
 /** An entry in the units that the page shows. @param {Entry} entry @returns {Entry} */
-function inOwnUnits([name, label, low, high, step]) {
+function entryInShownUnits([name, label, low, high, step]) {
   if (!(name in KINDS)) return step ? [name, label, low, high, step] : [name, label, low, high];
-  const ends = [low, high, step ?? 0].map((value) => Number((value / sizeOf(name)).toPrecision(DIGITS)));
-  const words = label.replace(/Hz|mm/, ownUnit(KINDS[name]).name);
+  const ends = [low, high, step ?? 0].map((value) => Number((value / unitSize(name)).toPrecision(DIGITS)));
+  const words = label.replace(/Hz|mm/, shownUnit(KINDS[name]).name);
   return step ? [name, words, ends[0], ends[1], ends[2]] : [name, words, ends[0], ends[1]];
 }
 
@@ -69,73 +69,73 @@ export class Controls {
     this.structure = structure;
     /** @type {Map<string, HTMLInputElement[]>} */
     this.inputs = new Map();
-    at("sliders").append(this.row(RESTITUTION));
+    at("sliders").append(this.makeRow(RESTITUTION));
     const parts = { "paper-sliders": PAPER, "own-sliders": OWN, "paper-loads": PAPER_LOADS, "own-loads": OWN_LOADS };
-    for (const [id, entries] of Object.entries(parts)) at(id).append(...entries.map((entry) => this.row(inOwnUnits(entry))));
+    for (const [id, entries] of Object.entries(parts)) at(id).append(...entries.map((entry) => this.makeRow(entryInShownUnits(entry))));
     for (const [name, { label }] of Object.entries(units)) {
-      at(name in loops.pushes ? "own-loads" : "si").append(this.row([name, `${name}, ${label}`.replace("_", " "), ...ranges[name]]));
+      at(name in loops.pushes ? "own-loads" : "si").append(this.makeRow([name, `${name}, ${label}`.replace("_", " "), ...ranges[name]]));
     }
     this.wall = /** @type {HTMLInputElement} */ (at("wall"));
-    this.wall.addEventListener("change", () => this.set("wall", Number(this.wall.checked), this.wall));
-    at("si").append(this.row(["D1", "D₁", 0, 1e3]), this.row(["D2", "D₂", 0, 1e3]));
+    this.wall.addEventListener("change", () => this.setNumber("wall", Number(this.wall.checked), this.wall));
+    at("si").append(this.makeRow(["D1", "D₁", 0, 1e3]), this.makeRow(["D2", "D₂", 0, 1e3]));
   }
 
   /** @param {Entry} entry */
-  row([name, label, min, max, step]) {
+  makeRow([name, label, min, max, step]) {
     const row = document.createElement("div");
     row.className = "slider";
     row.title = document.getElementById(`help-${name}`)?.textContent ?? "";
     const words = document.createElement("label");
     Object.assign(words, { htmlFor: name, textContent: label });
     row.append(words);
-    const number = inputOf({ type: "number", id: step ? `${name}-number` : name, min, max, step: "any" });
+    const number = makeInput({ type: "number", id: step ? `${name}-number` : name, min, max, step: "any" });
     const inputs = [number];
     if (step) {
-      inputs.unshift(inputOf({ type: "range", id: name, min, max, step }));
+      inputs.unshift(makeInput({ type: "range", id: name, min, max, step }));
       number.ariaLabel = `${label}, number`;
-      onNumber(inputs[0], (value) => this.set(name, value, inputs[0]), "input");
+      watchNumber(inputs[0], (value) => this.setNumber(name, value, inputs[0]), "input");
     }
-    onNumber(number, (value) => this.set(name, value, number));
+    watchNumber(number, (value) => this.setNumber(name, value, number));
     row.append(...inputs);
     this.inputs.set(name, inputs);
     return row;
   }
 
   /** What is expected, if the number leads to no structure. @param {string} name @param {number} value @param {HTMLInputElement} typed is left as it is */
-  set(name, value, typed) {
-    const structure = withNumber(this.structure, name, value * sizeOf(name));
+  setNumber(name, value, typed) {
+    const structure = withNumber(this.structure, name, value * unitSize(name));
     for (const [other, [low, high]] of Object.entries(this.ranges)) {
       const number = structure[/** @type {keyof Structure} */ (other)] ?? low;
       if (!(number >= low && number <= high)) return `makes ${other} ${number}; expected ${low} to ${high}`;
     }
-    const wrong = wrongIn(structure);
+    const wrong = contradictionIn(structure);
     if (wrong) return wrong;
     this.structure = structure;
     this.changed(structure);
-    this.fill(typed);
+    this.showNumbers(typed);
   }
 
   /** Show a structure's numbers, in the units of how it is shaken. @param {Structure} structure @param {Level} level */
-  show(structure, level) {
+  showStructure(structure, level) {
     this.structure = structure;
-    for (const id of ["paper-sliders", "paper-loads"]) this.at(id).hidden = inHertz(level);
-    for (const id of ["own-sliders", "own-loads", "own-note"]) this.at(id).hidden = !inHertz(level);
-    this.fill();
+    for (const id of ["paper-sliders", "paper-loads"]) this.at(id).hidden = isInHertz(level);
+    for (const id of ["own-sliders", "own-loads", "own-note"]) this.at(id).hidden = !isInHertz(level);
+    this.showNumbers();
   }
 
   /** @param {HTMLInputElement} [typed] */
-  fill(typed) {
-    const values = numbersIn(this.structure);
+  showNumbers(typed) {
+    const values = fieldNumbers(this.structure);
     this.wall.checked = this.structure.wall === 1;
     for (const name of OF_HALF_2) /** @type {HTMLElement} */ (this.inputs.get(name)?.[0].parentElement).hidden = this.wall.checked;
     for (const [name, inputs] of this.inputs) {
-      for (const input of inputs) if (input !== typed) showNumber(input, values[name] / sizeOf(name), DIGITS);
+      for (const input of inputs) if (input !== typed) showNumber(input, values[name] / unitSize(name), DIGITS);
     }
   }
 }
 
 /** @param {Record<string, string | number>} attributes */
-function inputOf(attributes) {
+function makeInput(attributes) {
   const input = document.createElement("input");
   for (const [name, value] of Object.entries(attributes)) input.setAttribute(name, String(value));
   return input;

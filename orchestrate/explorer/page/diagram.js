@@ -1,7 +1,7 @@
 /** An orbit diagram: responses along the frequency, some of them still to come. */
 
-import { hertzOf, inHertz, pointAt, pointAtHertz } from "./excitation.js";
-import { carried } from "./model.js";
+import { hertzOf, isInHertz, pointAt, pointAtHertz } from "./excitation.js";
+import { carryState } from "./model.js";
 import { niceStep } from "./scale.js";
 
 /**
@@ -36,7 +36,7 @@ export function decimalGrid(low, high, count) {
 }
 
 /** @param {Direction} direction @returns {("up" | "down")[]} */
-export function lanesOf(direction) {
+export function directionsOf(direction) {
   return direction === "both" ? ["up", "down"] : [direction];
 }
 
@@ -48,11 +48,11 @@ export function lanesOf(direction) {
  * @param {Settings} settings
  * @returns {Diagram}
  */
-export function empty(structure, { low, high, direction, level }, count, settings) {
-  const points = inHertz(level)
+export function emptyDiagram(structure, { low, high, direction, level }, count, settings) {
+  const points = isInHertz(level)
     ? decimalGrid(hertzOf(low, structure), hertzOf(high, structure), count).map((hertz) => pointAtHertz(structure, hertz, level))
     : decimalGrid(low, high, count).map((eta) => pointAt(structure, eta, level));
-  const lanes = lanesOf(direction).map((way) => ({
+  const lanes = directionsOf(direction).map((way) => ({
     direction: way,
     found: new Array(points.length),
     starts: null,
@@ -62,7 +62,7 @@ export function empty(structure, { low, high, direction, level }, count, setting
 }
 
 /** Index of the frequency nearest to `eta`. @param {Diagram} diagram @param {number} eta */
-export function nearest({ points }, eta) {
+export function nearestIndex({ points }, eta) {
   let best = 0;
   points.forEach((point, i) => {
     if (Math.abs(point.eta - eta) < Math.abs(points[best].eta - eta)) best = i;
@@ -71,7 +71,7 @@ export function nearest({ points }, eta) {
 }
 
 /** Where the response at an index begins; null where that is not known yet. @param {Lane} lane @param {number} index */
-export function startAt(lane, index) {
+export function startOfResponse(lane, index) {
   if (lane.starts) return Array.from(lane.starts.subarray(4 * index, 4 * index + 4));
   return lane.found[index]?.start ?? null;
 }
@@ -82,15 +82,15 @@ export function startAt(lane, index) {
  * @param {Point} point the first of the chain
  * @param {"up" | "down"} direction
  */
-export function startFrom(other, point, direction) {
+export function startOfChain(other, point, direction) {
   const rest = [0, 0, 0, 0];
   const lane = other?.lanes.find((one) => one.direction === direction);
   if (!other || !lane) return rest;
   const sign = direction === "up" ? 1 : -1;
   let best = -1;
   other.points.forEach(({ eta }, i) => {
-    if (sign * (point.eta - eta) < -1e-12 || !startAt(lane, i)) return;
+    if (sign * (point.eta - eta) < -1e-12 || !startOfResponse(lane, i)) return;
     if (best < 0 || sign * (eta - other.points[best].eta) > 0) best = i;
   });
-  return best < 0 ? rest : carried(startAt(lane, best) ?? rest, other.points[best], point);
+  return best < 0 ? rest : carryState(startOfResponse(lane, best) ?? rest, other.points[best], point);
 }

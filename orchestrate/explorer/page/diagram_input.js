@@ -8,7 +8,7 @@
 const CLICK = 5; // px: what moves less is a click
 
 /** @param {DiagramView} view @param {Acts} acts */
-export function listen(view, acts) {
+export function listenToDiagram(view, acts) {
   const { canvas } = view.picture;
   /** @type {number | null} */
   let from = null;
@@ -39,11 +39,11 @@ export function listen(view, acts) {
     from = null;
     view.marks.drag = null;
   });
-  canvas.addEventListener("keydown", (event) => pressed(event, view, acts));
+  canvas.addEventListener("keydown", (event) => actOnKey(event, view, acts));
 }
 
 /** @param {KeyboardEvent} event @param {DiagramView} view @param {Acts} acts */
-function pressed(event, view, acts) {
+function actOnKey(event, view, acts) {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
   const { low, high } = view.axes.x;
   const middle = view.marks.eta ?? (low + high) / 2;

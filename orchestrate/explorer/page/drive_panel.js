@@ -1,10 +1,10 @@
 /** The weak drive: a motor with an unbalance shakes the box; its speed may hang at the resonance. */
 
 import { drawChart } from "./chart.js";
-import { toDefault } from "./field.js";
-import { countOf } from "./response_words.js";
+import { resetToDefault } from "./field.js";
+import { impactCountWords } from "./response_words.js";
 import { Picture } from "./picture.js";
-import { shown } from "./scale.js";
+import { formatNumber } from "./scale.js";
 
 const IDLE = "Not running: press Slowly up.";
 
@@ -32,24 +32,24 @@ export class DrivePanel {
     this.rows = [];
     /** @type {Order | null} */
     this.order = null;
-    at("drive-go").addEventListener("click", () => this.run(!this.running));
-    at("ramp-up").addEventListener("click", () => this.drift(1));
-    at("ramp-down").addEventListener("click", () => this.drift(-1));
-    this.bonded.addEventListener("change", () => this.clear());
+    at("drive-go").addEventListener("click", () => this.setRunning(!this.running));
+    at("ramp-up").addEventListener("click", () => this.startRamp(1));
+    at("ramp-down").addEventListener("click", () => this.startRamp(-1));
+    this.bonded.addEventListener("change", () => this.forgetRun());
     this.voltage.addEventListener("input", () => (this.ramp = 0));
   }
 
   /** As when the page was opened. */
   reset() {
-    this.run(false);
+    this.setRunning(false);
     this.ramp = 0;
-    for (const input of [this.voltage, this.bonded]) toDefault(input);
-    this.clear();
+    for (const input of [this.voltage, this.bonded]) resetToDefault(input);
+    this.forgetRun();
     this.at("drive-status").textContent = IDLE;
   }
 
   /** Forget the run. */
-  clear() {
+  forgetRun() {
     this.state = null;
     this.rows = [];
     this.order?.cancel();
@@ -58,20 +58,20 @@ export class DrivePanel {
   }
 
   /** @param {boolean} running */
-  run(running) {
+  setRunning(running) {
     this.running = running;
     this.at("drive-go").textContent = running ? "Stop motor" : "Start motor";
-    if (running && !this.order) this.ask();
+    if (running && !this.order) this.requestSteps();
   }
 
   /** Let the voltage rise or fall slowly. @param {number} sign */
-  drift(sign) {
+  startRamp(sign) {
     this.ramp = sign;
-    this.run(true);
+    this.setRunning(true);
   }
 
   /** A voltage for each of the next steps: what the slider says, or a ramp from it. */
-  voltages() {
+  nextVoltages() {
     const { h } = this.start;
     const [low, high] = [Number(this.voltage.min), Number(this.voltage.max)];
     const first = this.voltage.valueAsNumber;
@@ -80,36 +80,36 @@ export class DrivePanel {
     if (this.ramp) {
       this.voltage.value = String(list[STEPS - 1] + change);
       const reached = list[STEPS - 1];
-      if (reached === (this.ramp > 0 ? high : low)) this.run(false);
+      if (reached === (this.ramp > 0 ? high : low)) this.setRunning(false);
     }
     return list;
   }
 
-  ask() {
+  requestSteps() {
     const bonded = this.bonded.checked ? 1 : 0;
-    const voltages = this.voltages();
+    const voltages = this.nextVoltages();
     const { oscillator, drive } = this.start;
     const start = {
       ...this.start,
       oscillator: { ...oscillator, bonded },
       drive: { ...drive, voltage: voltages[0], speed_start: voltages[0] / drive.motor_constant },
     };
-    const order = this.pool.ask("drive", { run: this.state, start, voltages }, ([part]) => this.take(part));
+    const order = this.pool.ask("drive", { run: this.state, start, voltages }, ([part]) => this.showSteps(part));
     this.order = order;
     void order.done.then(() => {
       if (this.order === order) this.order = null;
-      if (this.running && !this.order) setTimeout(() => this.running && !this.order && this.ask(), PACE);
+      if (this.running && !this.order) setTimeout(() => this.running && !this.order && this.requestSteps(), PACE);
     });
   }
 
   /** @param {{rows: Row[], run: Run}} part */
-  take({ rows, run }) {
+  showSteps({ rows, run }) {
     this.state = run;
     this.rows = [...this.rows, ...rows].slice(-KEPT);
     const last = this.rows[this.rows.length - 1];
     if (last) {
       const unit = this.start.drive.motor_constant * this.start.omega;
-      const words = `Voltage for a speed of ${shown(last.voltage / unit, 3)}: speed ${shown(last.speed / this.start.omega, 3)} of the beam's ω, ${countOf(last.impacts, "a revolution")}`;
+      const words = `Voltage for a speed of ${formatNumber(last.voltage / unit, 3)}: speed ${formatNumber(last.speed / this.start.omega, 3)} of the beam's ω, ${impactCountWords(last.impacts, "a revolution")}`;
       this.at("drive-status").textContent = words;
       this.picture.describe(`Speed of the motor over its voltage. ${words}`);
     }

@@ -7,11 +7,11 @@
  *   say what it expects
  * @param {"change" | "input"} [event] a typed number counts when it is complete: 1.7 begins with 1
  */
-export function onNumber(input, take, event = "change") {
+export function watchNumber(input, take, event = "change") {
   input.addEventListener(event, () => {
     const { valueAsNumber: value } = input;
     const good = Number.isFinite(value) && value >= Number(input.min) && value <= Number(input.max);
-    complain(input, (good ? take(value) : `expected ${input.min} to ${input.max}`) ?? "");
+    showComplaint(input, (good ? take(value) : `expected ${input.min} to ${input.max}`) ?? "");
   });
 }
 
@@ -19,18 +19,18 @@ export function onNumber(input, take, event = "change") {
 export function showNumber(input, value, digits = 12) {
   if (document.activeElement === input && input.type === "number") return;
   input.value = String(Number(value.toPrecision(digits)));
-  complain(input, "");
+  showComplaint(input, "");
 }
 
 /** As the page has it when it is opened. @param {HTMLInputElement} input */
-export function toDefault(input) {
+export function resetToDefault(input) {
   input.value = input.defaultValue;
   input.checked = input.defaultChecked;
-  complain(input, "");
+  showComplaint(input, "");
 }
 
 /** Say next to a field what is expected; nothing where all is well. @param {HTMLInputElement} input @param {string} words */
-function complain(input, words) {
+function showComplaint(input, words) {
   if (input.validationMessage === words) return;
   input.setCustomValidity(words);
   input.setAttribute("aria-invalid", String(Boolean(words)));

@@ -1,7 +1,7 @@
 /** Files that the user takes home: CSV, PNG, SVG. */
 
 /** @param {string} name @param {Blob} blob */
-export function save(name, blob) {
+export function saveFile(name, blob) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
   link.download = name;
@@ -25,5 +25,5 @@ export async function saveCsv(name, { head, rows }) {
     await new Promise((resolve) => setTimeout(resolve));
     end = performance.now() + 12;
   }
-  save(`${name}.csv`, new Blob(lines, { type: "text/csv" }));
+  saveFile(`${name}.csv`, new Blob(lines, { type: "text/csv" }));
 }

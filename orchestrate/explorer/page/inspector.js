@@ -3,18 +3,18 @@
 import { Animation } from "./animation.js";
 import { axisAround } from "./chart.js";
 import {
-  columnsOf,
+  shownColumns,
   historyChart,
   motionPictures,
   phaseChart,
   sectionChart,
   spectrumChart,
 } from "./motion_view.js";
-import { opensFrom } from "./opening.js";
-import { periodsOf } from "./response.js";
-import { shown } from "./scale.js";
+import { openingLevelWords } from "./opening.js";
+import { repeatPeriods } from "./response.js";
+import { formatNumber } from "./scale.js";
 import { Sound } from "./audio.js";
-import { averageWords, exponentWords, numbersOf, sentenceOf } from "./response_words.js";
+import { averageWords, exponentWords, responseNumbers, responseSentence } from "./response_words.js";
 
 /**
  * @typedef {import("./response.js").Response} Response
@@ -53,72 +53,72 @@ export class Inspector {
   }
 
   /** Show the motion of a response. @param {Choice} choice */
-  choose(choice) {
-    this.expect();
+  showMotion(choice) {
+    this.awaitMotion();
     this.choice = choice;
-    this.ask("motion", { ...choice, periods: this.periods, points: POINTS }, ([found]) => this.take(found), true);
+    this.request("motion", { ...choice, periods: this.periods, points: POINTS }, ([found]) => this.receiveMotion(found), true);
   }
 
   /** Another motion is to come: the one before is no longer the chosen one. */
-  expect() {
-    this.stop();
+  awaitMotion() {
+    this.cancelAll();
     Object.assign(this, { found: null, spectra: null, bonded: null, exponent: undefined, section: new Float64Array(0) });
     this.at("exponent").textContent = "…";
-    this.mark("coming");
+    this.setMotionState("coming");
   }
 
   /** Whether the chosen motion is there yet: until then what is seen of the one before pales. @param {"coming" | "there" | "failed"} state */
-  mark(state) {
+  setMotionState(state) {
     const page = this.at("motion").parentElement;
     if (page) page.dataset.motion = state;
   }
 
   /** The chosen motion cannot be computed: say so in place of the one before. @param {string} text */
-  fail(text) {
-    this.mark("failed");
+  showFailure(text) {
+    this.setMotionState("failed");
     this.at("sentence").textContent = `This motion cannot be computed: ${text}`;
     this.at("exponent").textContent = "–";
     this.listNumbers({});
   }
 
   /** The same beam without its delamination, from rest. @param {Point} point */
-  askUndamaged(point) {
+  requestUndamaged(point) {
     if (point.structure.wall) return; // to which nothing can be glued
     const settings = { transient: 2000, samples: 1, tolerance: 1e-2 };
-    const asked = { point: undamaged(point), start: [0, 0, 0, 0], settings, periods: this.periods, points: POINTS };
-    this.ask("motion", asked, ([{ motion }]) => {
+    const asked = { point: undamagedPoint(point), start: [0, 0, 0, 0], settings, periods: this.periods, points: POINTS };
+    this.request("motion", asked, ([{ motion }]) => {
       this.bonded = motion;
       this.drawMotion();
     });
   }
 
   /** @param {string} task @param {unknown} asked @param {(parts: any[]) => void} take @param {boolean} [urgent] */
-  ask(task, asked, take, urgent) {
+  request(task, asked, take, urgent) {
     const order = this.pool.ask(task, asked, take, urgent);
     this.orders.push(order);
     return order;
   }
 
   /** Call off what is still being computed; what is heard belongs to the motion before. */
-  stop() {
+  cancelAll() {
     this.orders.forEach((order) => order.cancel());
     this.orders = [];
     this.sound.stop();
   }
 
   /** @param {{response: Response, motion: Motion}} found */
-  take(found) {
+  receiveMotion(found) {
     this.found = found;
-    this.mark("there");
+    this.setMotionState("there");
     this.section = found.response.states;
     const { point } = /** @type {Choice} */ (this.choice);
-    this.askUndamaged(point);
-    this.ask("spectra", { point, start: found.response.end }, (parts) => parts.forEach((part) => this.takeSpectra(part)));
-    if (this.sound.wanted) this.listen(this.pitch);
+    this.requestUndamaged(point);
+    this.request("spectra", { point, start: found.response.end }, (parts) => parts.forEach((part) => this.receiveSpectraOrExponent(part)));
+    if (this.sound.wanted) this.playImpacts(this.pitch);
     this.drawMotion();
     this.drawSection();
-    this.animation.load(found.motion, point);
-    this.animation.picture.describe(`Animation of box and masses at frequency ratio ${shown(point.eta, 6)}, ${found.motion.impactTime.length} impacts`);
+    this.animation.setMotion(found.motion, point);
+    this.animation.picture.describe(`Animation of box and masses at frequency ratio ${formatNumber(point.eta, 6)}, ${found.motion.impactTime.length} impacts`);
     this.showNumbers();
     this.told();
   }
@@ -126,10 +126,10 @@ export class Inspector {
   showNumbers() {
     const { point, level } = /** @type {Choice} */ (this.choice);
     const { response, motion } = /** @type {{response: Response, motion: Motion}} */ (this.found);
-    this.at("sentence").textContent = sentenceOf(response, this.exponent, motion.contact.some(Boolean), opensFrom(point, level));
+    this.at("sentence").textContent = responseSentence(response, this.exponent, motion.contact.some(Boolean), openingLevelWords(point, level));
     this.at("average").textContent = averageWords(response.gaps.length);
-    this.at("average").classList.toggle("absent", periodsOf(response) > 0 || !response.impacts);
-    this.listNumbers(numbersOf(response, point, level, this.exponent));
+    this.at("average").classList.toggle("absent", repeatPeriods(response) > 0 || !response.impacts);
+    this.listNumbers(responseNumbers(response, point, level, this.exponent));
   }
 
   /** Show numbers by name in place of those before. @param {Record<string, string>} numbers */
@@ -140,7 +140,7 @@ export class Inspector {
       const row = document.createElement("div");
       row.className = "told";
       if (/[ξη]/.test(name)) row.title = this.at(name.includes("ξ") ? "help-xi" : "help-eta").textContent ?? "";
-      row.append(tagged("dt", name), tagged("dd", value));
+      row.append(elementWith("dt", name), elementWith("dd", value));
       list.prepend(row);
     }
   }
@@ -153,14 +153,14 @@ export class Inspector {
     const phase = phaseChart(motion, point, level);
     const beside = /** @type {HTMLInputElement} */ (this.at("beside")).checked;
     if (beside && this.bonded) {
-      const { x1, v1 } = columnsOf(this.bonded, undamaged(point), level);
-      const { turns } = columnsOf(motion, point, level);
+      const { x1, v1 } = shownColumns(this.bonded, undamagedPoint(point), level);
+      const { turns } = shownColumns(motion, point, level);
       const look = /** @type {const} */ ({ colour: "soft", label: "undamaged", width: 2, alpha: 0.8 });
       history.series.unshift({ x: turns, y: x1, ...look });
       phase.series.unshift({ x: x1, y: v1, ...look });
-      for (const chart of [history, phase]) widen(chart);
+      for (const chart of [history, phase]) widenAxes(chart);
     }
-    const words = `at frequency ratio ${shown(point.eta, 6)}`;
+    const words = `at frequency ratio ${formatNumber(point.eta, 6)}`;
     this.pictures.show("history", history, `Time histories of both masses ${words}: ${motion.impactTime.length} impacts in ${this.periods} periods, permanent contact in ${history.spans?.length ?? 0} spans`);
     this.pictures.show("phase", phase, `Phase curves of both masses ${words}`);
   }
@@ -168,16 +168,16 @@ export class Inspector {
   drawSection() {
     const { point, level } = /** @type {Choice} */ (this.choice);
     const count = this.section.length / 4;
-    this.pictures.show("section", sectionChart(this.section, point, level), `Stroboscopic section at frequency ratio ${shown(point.eta, 6)}: ${count} samples of gap and gap velocity`);
+    this.pictures.show("section", sectionChart(this.section, point, level), `Stroboscopic section at frequency ratio ${formatNumber(point.eta, 6)}: ${count} samples of gap and gap velocity`);
     this.at("section-count").textContent = `${count} periods`;
   }
 
   /** Let the section grow. */
-  runOn() {
+  extendSection() {
     if (!this.choice || !this.found) return;
     const { point } = this.choice;
     const end = Array.from(this.section.subarray(this.section.length - 4));
-    this.ask("section", { point, start: end, periods: LONG }, (parts) => {
+    this.request("section", { point, start: end, periods: LONG }, (parts) => {
       const joined = new Float64Array(this.section.length + parts.reduce((sum, part) => sum + part.length, 0));
       joined.set(this.section);
       let place = this.section.length;
@@ -191,10 +191,10 @@ export class Inspector {
   }
 
   /** @param {any} part */
-  takeSpectra(part) {
+  receiveSpectraOrExponent(part) {
     if (part.exponent !== undefined) {
       this.exponent = part.exponent;
-      this.at("exponent").textContent = exponentWords(part.exponent, this.found ? periodsOf(this.found.response) : 0);
+      this.at("exponent").textContent = exponentWords(part.exponent, this.found ? repeatPeriods(this.found.response) : 0);
       if (this.found) this.showNumbers();
       return;
     }
@@ -210,14 +210,14 @@ export class Inspector {
   }
 
   /** Play the impacts of many periods as they come from the kernel. @param {number} pitch periods a second */
-  listen(pitch) {
+  playImpacts(pitch) {
     this.pitch = pitch;
     this.sound.wanted = true;
     if (!this.choice || !this.found) return;
     const periods = Math.max(1, Math.round(pitch * (pitch < 8 ? 4 : 2)));
     const { rate } = this.sound;
     const asked = { point: this.choice.point, start: this.found.response.end, periods, pitch, rate };
-    this.ask("sound", asked, ([wave]) => {
+    this.request("sound", asked, ([wave]) => {
       this.sound.play(wave);
       this.told();
     });
@@ -225,17 +225,17 @@ export class Inspector {
 }
 
 /** The same without its delamination. @param {Point} point @returns {Point} */
-const undamaged = (point) => ({ ...point, structure: { ...point.structure, bonded: 1 } });
+const undamagedPoint = (point) => ({ ...point, structure: { ...point.structure, bonded: 1 } });
 
 /** Let the axes of a chart hold all of its curves; time stays as it is. @param {Chart} chart */
-function widen(chart) {
+function widenAxes(chart) {
   const curves = chart.series.filter(({ dots }) => !dots);
   chart.y = axisAround(curves.map(({ y }) => y), chart.y.label ?? "");
   if (!chart.spans) chart.x = axisAround(curves.map(({ x }) => x), chart.x.label ?? "");
 }
 
 /** @param {string} tag @param {string} text */
-function tagged(tag, text) {
+function elementWith(tag, text) {
   const element = document.createElement(tag);
   element.textContent = text;
   return element;

@@ -35,13 +35,13 @@ export class Library {
   }
 
   /** What an FMU said last. */
-  message(model = MODEL) {
+  lastMessage(model = MODEL) {
     const bytes = new Uint8Array(this.memory.buffer, this.places[`${model}_message`].value);
     return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
   }
 
   /** @param {Kind} kind @param {number} address @param {number} count */
-  view(kind, address, count) {
+  viewMemory(kind, address, count) {
     const type = { u32: Uint32Array, i32: Int32Array, f64: Float64Array, u8: Uint8Array }[kind];
     return new type(this.memory.buffer, address, count);
   }
@@ -57,7 +57,7 @@ export class Buffers {
   }
 
   /** @param {number} bytes */
-  take(bytes) {
+  allocate(bytes) {
     const address = this.library.calls.malloc(Math.max(bytes, 8));
     if (!address) throw new Error("out of memory");
     this.taken.push(address);
@@ -67,15 +67,15 @@ export class Buffers {
   /** An array of numbers, or of zeros where their count is given. @param {Kind} kind @param {ArrayLike<number> | number} values */
   array(kind, values) {
     const count = typeof values === "number" ? values : values.length;
-    const address = this.take(count * WIDTH[kind]);
-    const view = this.library.view(kind, address, count);
+    const address = this.allocate(count * WIDTH[kind]);
+    const view = this.library.viewMemory(kind, address, count);
     if (typeof values === "number") view.fill(0);
     else view.set(values);
     return address;
   }
 
   /** A structure with some of its fields set, the others zero. @param {string} name @param {Record<string, number>} values */
-  structure(name, values) {
+  newStructure(name, values) {
     const { size, fields } = this.library.loops.structures[name];
     const address = this.array("u8", size);
     const view = new DataView(this.library.memory.buffer, address, size);
@@ -89,14 +89,14 @@ export class Buffers {
   }
 
   /** Value references as an array of C. @param {string[]} names */
-  references(names, model = MODEL) {
+  valueReferences(names, model = MODEL) {
     return this.array("u32", names.map((name) => this.library.variables[model][name]));
   }
 
   /** A row of what a structure under an excitation is for the loops. @param {Point} point */
-  traits({ structure, frequency, amplitude }) {
+  traitsRow({ structure, frequency, amplitude }) {
     const { loops, calls } = this.library;
-    const pushed = Number(pushesOf(structure, loops).some(([, value]) => value !== 0));
+    const pushed = Number(loadsOf(structure, loops).some(([, value]) => value !== 0));
     /** @type {Record<string, number>} */
     const known = { ...structure, omega: omegaOf(structure), frequency, amplitude, pushed };
     const row = this.array("f64", loops.traits.map((name) => known[name] ?? 0));
@@ -111,7 +111,7 @@ export class Buffers {
 }
 
 /** Loads other than the box's harmonic motion, by the FMU's inputs. @param {Structure} structure @param {Loops} loops @returns {[string, number][]} */
-function pushesOf(structure, { pushes }) {
+function loadsOf(structure, { pushes }) {
   /** @type {Record<string, number>} */
   const known = { ...structure };
   return Object.entries(pushes).map(([name, input]) => [input, known[name] ?? 0]);
@@ -124,13 +124,13 @@ export class Oscillator {
     this.library = library;
     this.buffers = new Buffers(library);
     const { reals, booleans, read, series, capacity } = library.loops;
-    this.own = this.buffers.structure("OscillatorCalls", {
-      ...{ reals: this.buffers.references(reals), booleans: this.buffers.references(booleans), series: this.buffers.references(series) },
+    this.own = this.buffers.newStructure("OscillatorCalls", {
+      ...{ reals: this.buffers.valueReferences(reals), booleans: this.buffers.valueReferences(booleans), series: this.buffers.valueReferences(series) },
       ...{ real_count: reals.length, boolean_count: booleans.length, start: reals.indexOf("x1_start") },
       ...{ series_count: series.length, capacity, kept: this.buffers.array("f64", series.length * capacity) },
       ...Object.fromEntries(read.map((name) => [name, library.variables.oscillator[name]])),
     });
-    if (!library.calls.oscillator_open_fmu(this.own, Number(stops))) throw new Error(library.message() || "out of memory");
+    if (!library.calls.oscillator_open_fmu(this.own, Number(stops))) throw new Error(library.lastMessage() || "out of memory");
   }
 
   close() {
@@ -142,22 +142,22 @@ export class Oscillator {
   *loop(name, ...numbers) {
     for (;;) {
       const answer = this.library.calls[name](...numbers);
-      if (answer === BROKEN) throw new Error(this.library.message() || `${name} stopped`);
+      if (answer === BROKEN) throw new Error(this.library.lastMessage() || `${name} stopped`);
       if (answer !== PAUSED) return;
       yield;
     }
   }
 
   /** What there is to compute: one response. @param {Buffers} buffers @param {Point} point @param {Iterable<number>} start @param {Record<string, number>} more */
-  task(buffers, point, start, more) {
+  responseTask(buffers, point, start, more) {
     const { loops } = this.library;
     const { set, reals, booleans } = loops;
     const { structure, frequency, amplitude } = point;
-    const pushes = Object.fromEntries(pushesOf(structure, loops));
+    const pushes = Object.fromEntries(loadsOf(structure, loops));
     /** @type {Record<string, number>} */
     const values = { ...set, ...structure, ...pushes, box_frequency: frequency, box_amplitude: amplitude };
-    return buffers.structure("ResponseTask", {
-      ...{ count: 1, piece: PIECE, traits: buffers.traits(point), starts: buffers.array("f64", Array.from(start)) },
+    return buffers.newStructure("ResponseTask", {
+      ...{ count: 1, piece: PIECE, traits: buffers.traitsRow(point), starts: buffers.array("f64", Array.from(start)) },
       reals: buffers.array("f64", reals.map((name) => values[name])),
       booleans: buffers.array("u8", booleans.map((name) => values[name])),
       periods: buffers.array("f64", [(2 * Math.PI) / frequency]),
@@ -166,11 +166,11 @@ export class Oscillator {
   }
 
   /** Begin at phase 0. @param {Point} point @param {Iterable<number>} start */
-  begin(point, start) {
+  initialize(point, start) {
     const buffers = new Buffers(this.library);
-    const begun = this.library.calls.begin(this.own, this.task(buffers, point, start, {}), 0);
+    const begun = this.library.calls.begin(this.own, this.responseTask(buffers, point, start, {}), 0);
     buffers.free();
-    if (!begun) throw new Error(this.library.message());
+    if (!begun) throw new Error(this.library.lastMessage());
   }
 
   /**
@@ -188,12 +188,12 @@ export class Oscillator {
       const states = buffers.array("f64", 4 * count);
       for (let done = 0; done < periods; done += SAMPLED) {
         const [time, target] = [first + done, first + done + SAMPLED].map((periods) => periods * period);
-        if (!library.calls.sample_evenly(this.own, time, target, points * SAMPLED, states + 32 * points * done)) throw new Error(library.message());
+        if (!library.calls.sample_evenly(this.own, time, target, points * SAMPLED, states + 32 * points * done)) throw new Error(library.lastMessage());
         yield;
       }
       const [memory, amplitudes] = [library.calls.spectrum_size(count), count / 2 + 1].map((size) => buffers.array("f64", size));
       library.calls.acceleration_spectrum(states, 4, count, periods, point.frequency, point.amplitude, memory, amplitudes);
-      const amplitude = new Float64Array(library.view("f64", amplitudes, highest * periods + 1));
+      const amplitude = new Float64Array(library.viewMemory("f64", amplitudes, highest * periods + 1));
       return { order: Float64Array.from(amplitude, (_, line) => line / periods), amplitude };
     } finally {
       buffers.free();
@@ -218,11 +218,11 @@ export class Oscillator {
       };
       const more = { transients: buffers.array("u32", [transient, 0]), memory: buffers.array("f64", calls.memory_size(samples)) };
       const asked = { samples, tolerance, decides: Number(decides), ...more, ...places };
-      const task = this.task(buffers, point, start, asked);
-      yield* this.loop("respond", this.own, task, buffers.structure("ResponseProgress", {}), WORK);
+      const task = this.responseTask(buffers, point, start, asked);
+      yield* this.loop("respond", this.own, task, buffers.newStructure("ResponseProgress", {}), WORK);
       /** @param {number} address @param {number} count */
-      const numbers = (address, count) => new Float64Array(this.library.view("f64", address, count));
-      const counts = this.library.view("i32", places.counts, loops.counts.length);
+      const numbers = (address, count) => new Float64Array(this.library.viewMemory("f64", address, count));
+      const counts = this.library.viewMemory("i32", places.counts, loops.counts.length);
       return {
         states: numbers(places.states, 4 * samples),
         largest: numbers(places.largest, 1)[0],
@@ -247,28 +247,28 @@ export class Oscillator {
     const buffers = new Buffers(this.library);
     const width = told.length + 2;
     try {
-      const player = buffers.structure("PlayerCalls", {
-        ...{ outputs: buffers.references(outputs), impact_outputs: buffers.references(told), contact: buffers.references(["in_contact"]) },
+      const player = buffers.newStructure("PlayerCalls", {
+        ...{ outputs: buffers.valueReferences(outputs), impact_outputs: buffers.valueReferences(told), contact: buffers.valueReferences(["in_contact"]) },
         ...{ output_count: outputs.length, impact_output_count: told.length },
       });
       const { PlayerCalls, PlayProgress } = this.library.loops.structures;
       const fmi = PlayerCalls.fields.inputs[1]; // it comes first
-      this.library.view("u8", player, fmi).set(this.library.view("u8", this.own, fmi));
+      this.library.viewMemory("u8", player, fmi).set(this.library.viewMemory("u8", this.own, fmi));
       const places = {
         rows: buffers.array("f64", outputs.length * times.length),
         ...{ contacts: buffers.array("u8", times.length), impacts: buffers.array("f64", width * IMPACTS) },
       };
-      const task = buffers.structure("PlayTask", {
+      const task = buffers.newStructure("PlayTask", {
         ...{ nodes: buffers.array("f64", [from, times[times.length - 1]]), samples: buffers.array("f64", times) },
         ...{ piece_count: 1, sample_count: times.length, impact_capacity: IMPACTS, max_steps: WORK, ...places },
       });
-      const progress = buffers.structure("PlayProgress", { time: from });
+      const progress = buffers.newStructure("PlayProgress", { time: from });
       const kept = PlayProgress.fields.impact[1] / WIDTH.u32;
       /** @type {number[][]} */
       const impacts = [];
       const take = () => {
-        const count = this.library.view("u32", progress, kept + 1)[kept];
-        const rows = this.library.view("f64", places.impacts, width * count);
+        const count = this.library.viewMemory("u32", progress, kept + 1)[kept];
+        const rows = this.library.viewMemory("f64", places.impacts, width * count);
         for (let i = 0; i < count; i++) impacts.push(Array.from(rows.subarray(width * i, width * (i + 1))));
       };
       for (const _ of this.loop("play", player, task, progress)) {
@@ -277,8 +277,8 @@ export class Oscillator {
       }
       take();
       return {
-        rows: new Float64Array(this.library.view("f64", places.rows, outputs.length * times.length)),
-        contact: new Uint8Array(this.library.view("u8", places.contacts, times.length)),
+        rows: new Float64Array(this.library.viewMemory("f64", places.rows, outputs.length * times.length)),
+        contact: new Uint8Array(this.library.viewMemory("u8", places.contacts, times.length)),
         impacts,
       };
     } finally {
@@ -298,28 +298,28 @@ export class Oscillator {
     const period = (2 * Math.PI) / point.frequency;
     /** @type {number[][]} */
     const impacts = [];
-    this.begin(point, start);
+    this.initialize(point, start);
     for (let done = 0, end = periods; ; done = end, end *= 2) {
       const span = yield* this.play(done * period, Float64Array.of(end * period), [], DEVIATED);
       for (const impact of span.impacts) impacts.push(impact);
       if (impacts.length < 2 * batches) return null;
-      const found = this.exponentOf(point, impacts, end * period);
+      const found = this.exponentOfImpacts(point, impacts, end * period);
       if (found.verdict || 2 * end > longest || impacts.length > most) return found;
     }
   }
 
   /** @param {Point} point @param {number[][]} impacts @param {number} end s @returns {Exponent} */
-  exponentOf(point, impacts, end) {
+  exponentOfImpacts(point, impacts, end) {
     const { calls, loops } = this.library;
     const { blocks, batches, sigmas, wander } = loops.exponent;
     const buffers = new Buffers(this.library);
     /** @type {Record<string, number>} */
     const known = { ...point.structure };
-    const numbers = buffers.array("f64", [...loops.deviating.map((name) => known[name] ?? 0), point.amplitude, point.frequency, ...pushesOf(point.structure, loops).map(([, value]) => value)]);
+    const numbers = buffers.array("f64", [...loops.deviating.map((name) => known[name] ?? 0), point.amplitude, point.frequency, ...loadsOf(point.structure, loops).map(([, value]) => value)]);
     const rows = buffers.array("f64", impacts.flat());
     const [memory, found] = [calls.exponent_size(impacts.length), 2].map((size) => buffers.array("f64", size));
     calls.largest_exponent(numbers, rows, impacts.length, end, blocks, batches, memory, found);
-    const [value, error] = this.library.view("f64", found, 2);
+    const [value, error] = this.library.viewMemory("f64", found, 2);
     buffers.free();
     const floor = calls.wander_floor(wander, omegaOf(point.structure) * end);
     return { value, error, verdict: calls.classify_exponent(value, error, floor, sigmas) };

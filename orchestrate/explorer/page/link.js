@@ -12,7 +12,7 @@ import { LEVELS, PAPER } from "./excitation.js";
 export const ETAS = [1e-3, 1000];
 
 /** @param {View} view @param {View} usual what need not be said @param {string} [tour] stop of the tour */
-export function fragmentOf({ structure, level, low, high, direction, eta, start }, usual, tour) {
+export function linkFragment({ structure, level, low, high, direction, eta, start }, usual, tour) {
   const words = new URLSearchParams(tour ? { tour } : {});
   for (const [name, value] of Object.entries({ from: low, to: high, direction })) words.set(name, String(value));
   for (const [name, value] of Object.entries(structure)) {
@@ -25,7 +25,7 @@ export function fragmentOf({ structure, level, low, high, direction, eta, start 
 }
 
 /** A view from a link; what it does not say, or says wrongly, is as in `view`. @param {string} fragment @param {View} view @param {Ranges} ranges @returns {View} */
-export function viewOf(fragment, view, ranges) {
+export function viewFromLink(fragment, view, ranges) {
   const words = new URLSearchParams(fragment.replace(/^#/, ""));
   /** @param {string} name @param {[number, number]} range @param {number | undefined} other */
   const number = (name, [least, most], other) => {
@@ -41,7 +41,7 @@ export function viewOf(fragment, view, ranges) {
   const [low, high] = [number("from", ETAS, view.low) ?? view.low, number("to", ETAS, view.high) ?? view.high];
   return {
     structure,
-    level: levelOf(number) ?? view.level,
+    level: levelFromLink(number) ?? view.level,
     ...(high > low ? { low, high } : { low: view.low, high: view.high }),
     direction: direction === "up" || direction === "down" || direction === "both" ? direction : view.direction,
     eta: number("eta", ETAS, undefined) ?? view.eta,
@@ -50,7 +50,7 @@ export function viewOf(fragment, view, ranges) {
 }
 
 /** @param {(name: string, range: [number, number], other: undefined) => number | undefined} number @returns {Level | undefined} */
-function levelOf(number) {
+function levelFromLink(number) {
   for (const unit of /** @type {const} */ (["g", "mm"])) {
     const value = number(unit, LEVELS[unit], undefined);
     if (value !== undefined) return { unit, value };

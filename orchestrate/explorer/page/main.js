@@ -1,9 +1,9 @@
 /** Starts the page. */
 
 import { App } from "./app.js";
-import { load } from "./payload.js";
+import { loadPayload } from "./payload.js";
 
-load().then(
+loadPayload().then(
   (payload) => {
     const app = new App(payload);
     Object.assign(window, { explorer: app });

@@ -15,7 +15,7 @@ export const useLibrary = (compiled) => (library = compiled);
  * @param {(buffers: Buffers, calls: Library["calls"]) => T} run
  * @returns {T}
  */
-function inRooms(run) {
+function withBuffers(run) {
   const buffers = new Buffers(library);
   try {
     return run(buffers, library.calls);
@@ -25,12 +25,12 @@ function inRooms(run) {
 }
 
 /** Numbers that have come. @param {number} address @param {number} count */
-const taken = (address, count) => new Float64Array(library.view("f64", address, count));
+const copyNumbers = (address, count) => new Float64Array(library.viewMemory("f64", address, count));
 
 /** A structure under an excitation: its numbers, and by name what follows from them. @param {Point} point @returns {Record<string, number>} */
 export function traitsOf(point) {
   const { traits } = library.loops;
-  const row = inRooms((buffers) => taken(buffers.traits(point), traits.length));
+  const row = withBuffers((buffers) => copyNumbers(buffers.traitsRow(point), traits.length));
   return Object.fromEntries(traits.map((name, i) => [name, row[i]]));
 }
 
@@ -38,37 +38,37 @@ export function traitsOf(point) {
 export function gapsOf(states, point) {
   const count = states.length / 4;
   const { gap_offset } = traitsOf(point);
-  return inRooms((buffers, calls) => {
+  return withBuffers((buffers, calls) => {
     const gaps = buffers.array("f64", count);
     calls.find_gaps(buffers.array("f64", states), count, buffers.array("f64", [gap_offset]), 1, gaps);
-    return taken(gaps, count);
+    return copyNumbers(gaps, count);
   });
 }
 
 /** Absolute accelerations of both masses. @param {Motion} motion @param {Point} point */
 export function accelerationsOf({ states, contact }, point) {
-  return inRooms((buffers, calls) => {
+  return withBuffers((buffers, calls) => {
     const found = buffers.array("f64", 2 * contact.length);
-    calls.find_accelerations(buffers.array("f64", states), contact.length, buffers.traits(point), buffers.array("u8", contact), found);
-    return taken(found, 2 * contact.length);
+    calls.find_accelerations(buffers.array("f64", states), contact.length, buffers.traitsRow(point), buffers.array("u8", contact), found);
+    return copyNumbers(found, 2 * contact.length);
   });
 }
 
 /** A state at one point as the like one at another. @param {number[]} state @param {Point} from @param {Point} to */
-export function carried(state, from, to) {
+export function carryState(state, from, to) {
   const length = lengthOf(to) / lengthOf(from);
   const speed = (length * omegaOf(to.structure)) / omegaOf(from.structure);
-  return inRooms((buffers, calls) => {
+  return withBuffers((buffers, calls) => {
     const like = buffers.array("f64", 4);
-    calls.carry_state(buffers.array("f64", state), buffers.traits(from), buffers.traits(to), length, speed, like);
-    return Array.from(taken(like, 4));
+    calls.carry_state(buffers.array("f64", state), buffers.traitsRow(from), buffers.traitsRow(to), length, speed, like);
+    return Array.from(copyNumbers(like, 4));
   });
 }
 
 /** How near states of a motion come to a state, over the motion's size. @param {Float64Array} states @param {number} frequency @param {number} gap its largest, m @param {ArrayLike<number>} state */
-export function distanceOf(states, frequency, gap, state) {
+export function distanceToState(states, frequency, gap, state) {
   const count = states.length / 4;
-  return inRooms((buffers, calls) => {
+  return withBuffers((buffers, calls) => {
     const [one, other] = [states, state].map((numbers) => buffers.array("f64", numbers));
     return calls.nearest_state(one, count, frequency, gap, other, buffers.array("f64", calls.memory_size(count)));
   });

@@ -21,10 +21,10 @@ const TOLD = ["impact_velocity", "x1", "impact_energy"];
  * @param {number} points a period
  * @returns {Generator<undefined, Motion>} it pauses
  */
-export function* record(stopping, point, start, first, periods, points) {
+export function* recordMotion(stopping, point, start, first, periods, points) {
   const period = periodOf(point);
   const time = Float64Array.from({ length: periods * points + 1 }, (_, i) => (first + i / points) * period);
-  stopping.begin(point, start);
+  stopping.initialize(point, start);
   const before = yield* stopping.play(0, time.slice(0, 1), [], TOLD);
   const { rows, contact, impacts } = yield* stopping.play(time[0], time, ["x1", "x2", "v1", "v2"], TOLD);
   const [impactTime, impactSpeed, impactPlace, lost] = [0, 1, 2, 3].map((part) => Float64Array.from(impacts, (impact) => impact[part]));

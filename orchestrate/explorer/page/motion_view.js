@@ -1,10 +1,10 @@
 /** The motion at the chosen frequency in four pictures, and in words. */
 
 import { axisAround, drawChart } from "./chart.js";
-import { hertzOf, inHertz } from "./excitation.js";
+import { hertzOf, isInHertz } from "./excitation.js";
 import { gapsOf, traitsOf } from "./model.js";
 import { Picture } from "./picture.js";
-import { scaleAt, wordsOf } from "./units.js";
+import { axisScale, axisWords } from "./units.js";
 
 /**
  * @typedef {"history" | "phase" | "section" | "spectrum"} Name
@@ -35,8 +35,8 @@ export function motionPictures(at) {
 }
 
 /** Columns of a motion as the axes have them: time from its beginning, displacements from rest, where pressed halves touch. @param {Motion} motion @param {Point} point @param {Level} level */
-export function columnsOf(motion, point, level) {
-  const { length, speed, time } = scaleAt(point, level);
+export function shownColumns(motion, point, level) {
+  const { length, speed, time } = axisScale(point, level);
   const { rest_1, rest_2 } = traitsOf(point);
   const rest = [rest_1, rest_2, 0, 0];
   /** @param {number} part @param {number} unit */
@@ -67,28 +67,28 @@ export function contactSpans({ contact }, turns) {
 }
 
 /** What a displacement is counted from is said where it is not the springs' own length. @param {Point} point @param {Level} level */
-function placeWords(point, level) {
-  const { place } = wordsOf(level);
+function displacementLabel(point, level) {
+  const { place } = axisWords(level);
   return traitsOf(point).gap_offset < 0 ? place.replace("displacement", "displacement from rest") : place;
 }
 
 /** What half 1 strikes. @param {Point} point */
-export const secondOf = ({ structure }) => (structure.wall ? "wall" : "half 2");
+export const secondName = ({ structure }) => (structure.wall ? "wall" : "half 2");
 
 /** Time histories with impacts and contact. @param {Motion} motion @param {Point} point @param {Level} level @returns {Chart} */
 export function historyChart(motion, point, level) {
-  const { turns, x1, x2 } = columnsOf(motion, point, level);
-  const { length, time } = scaleAt(point, level);
-  const words = wordsOf(level);
+  const { turns, x1, x2 } = shownColumns(motion, point, level);
+  const { length, time } = axisScale(point, level);
+  const words = axisWords(level);
   const { rest_1 } = traitsOf(point);
   const hits = motion.impactTime.map((t) => (t - motion.time[0]) / time);
   return {
     x: { low: 0, high: turns[turns.length - 1], label: words.time },
-    y: axisAround([x1, x2], placeWords(point, level)),
+    y: axisAround([x1, x2], displacementLabel(point, level)),
     spans: contactSpans(motion, turns),
     series: [
       { x: turns, y: x1, colour: "one", label: "half 1" },
-      { x: turns, y: x2, colour: "two", label: secondOf(point) },
+      { x: turns, y: x2, colour: "two", label: secondName(point) },
       { x: hits, y: motion.impactPlace.map((x) => (x - rest_1) / length), colour: "hit", dots: 2.5, label: "impact" },
     ],
   };
@@ -96,39 +96,39 @@ export function historyChart(motion, point, level) {
 
 /** Phase curves of both masses, as in the paper's Figure 12. @param {Motion} motion @param {Point} point @param {Level} level @returns {Chart} */
 export function phaseChart(motion, point, level) {
-  const { x1, x2, v1, v2 } = columnsOf(motion, point, level);
-  const words = wordsOf(level);
+  const { x1, x2, v1, v2 } = shownColumns(motion, point, level);
+  const words = axisWords(level);
   return {
-    x: axisAround([x1, x2], placeWords(point, level)),
+    x: axisAround([x1, x2], displacementLabel(point, level)),
     y: axisAround([v1, v2], words.speed),
     series: [
       { x: x1, y: v1, colour: "one", label: "half 1", width: 1 },
-      { x: x2, y: v2, colour: "two", label: secondOf(point), width: 1 },
+      { x: x2, y: v2, colour: "two", label: secondName(point), width: 1 },
     ],
   };
 }
 
 /** In which of 200 equal parts of an axis a value lies. @param {number} value @param {Axis} axis */
-const cell = (value, { low, high }) => Math.round((200 * (value - low)) / (high - low));
+const cellIndex = (value, { low, high }) => Math.round((200 * (value - low)) / (high - low));
 
 /** Stroboscopic section of gap and gap velocity. @param {ArrayLike<number>} states @param {Point} point @param {Level} level @returns {Chart} */
 export function sectionChart(states, point, level) {
-  const { length, speed } = scaleAt(point, level);
-  const words = wordsOf(level);
+  const { length, speed } = axisScale(point, level);
+  const words = axisWords(level);
   const count = states.length / 4;
   const x = gapsOf(states, point).map((gap) => gap / length);
   const y = Float64Array.from({ length: count }, (_, i) => (states[4 * i + 3] - states[4 * i + 2]) / speed);
   const axes = { x: axisAround([x], words.gap), y: axisAround([y], words.gapSpeed) };
-  const places = new Set(x.map((value, i) => 1000 * cell(value, axes.x) + cell(y[i], axes.y)));
+  const places = new Set(x.map((value, i) => 1000 * cellIndex(value, axes.x) + cellIndex(y[i], axes.y)));
   const dots = places.size <= FEW ? 5 : count > 2000 ? 0.8 : 1.8;
   return { ...axes, series: [{ x, y, colour: "ink", dots, alpha: 0.8 }] };
 }
 
 /** @param {{delaminated: Spectrum, bonded: Spectrum | null}} found @param {Point} point @param {Level} level @param {Measured | null} record @returns {Chart} */
 export function spectrumChart({ delaminated, bonded }, point, level, record) {
-  const { line, acceleration } = scaleAt(point, level);
-  const words = wordsOf(level);
-  const measured = record && inHertz(level) ? seriesOf(record, hertzOf(point.eta, point.structure)) : null;
+  const { line, acceleration } = axisScale(point, level);
+  const words = axisWords(level);
+  const measured = record && isInHertz(level) ? measuredSeries(record, hertzOf(point.eta, point.structure)) : null;
   const heights = [delaminated.amplitude, bonded?.amplitude ?? new Float64Array(0), Float64Array.from(measured?.y ?? [])];
   const ends = heights.map((amplitude) => amplitude.reduce((most, value) => Math.max(most, value), 0));
   const high = Math.max(...ends) / acceleration || 1;
@@ -150,7 +150,7 @@ export function spectrumChart({ delaminated, bonded }, point, level, record) {
 }
 
 /** What is measured at a frequency: orders of a swept sine, or a spectrum, over the excitation's frequency. @param {Measured} record @param {number} hertz @returns {{x: number[], y: number[], dots?: number} | null} nothing beside the sweep */
-function seriesOf({ orders, lines }, hertz) {
+function measuredSeries({ orders, lines }, hertz) {
   if (lines) return { x: lines.frequency.map((value) => value / hertz), y: lines.amplitude };
   const { frequency, amplitude } = /** @type {NonNullable<Measured["orders"]>} */ (orders);
   if (hertz < frequency[0] || hertz > frequency[frequency.length - 1]) return null;

@@ -1,21 +1,21 @@
 /** Branches of periodic orbits over the diagram: stable, unstable, bifurcation points. */
 
-import { panels, STRIP } from "./diagram_view.js";
+import { panelPlaces, STRIP } from "./diagram_view.js";
 import { pointAt } from "./excitation.js";
-import { scaleOf } from "./scale.js";
+import { axisToPixels } from "./scale.js";
 import { gapUnit } from "./units.js";
 
 /** Draws them. @param {import("./payload.js").Table} table @param {DiagramView} view @returns {Draw} */
-export function overlayOf({ branches, bifurcations, structure }, view) {
+export function branchOverlay({ branches, bifurcations, structure }, view) {
   return (pen, size, theme) => {
-    const [left, top, width, height] = panels(size).gaps;
-    const px = scaleOf(view.axes.x, left, left + width);
-    const scale = scaleOf(view.axes.gaps, top + height - STRIP, top);
+    const [left, top, width, height] = panelPlaces(size).gaps;
+    const px = axisToPixels(view.axes.x, left, left + width);
+    const scale = axisToPixels(view.axes.gaps, top + height - STRIP, top);
     const { level, lanes } = /** @type {Diagram} */ (view.diagram);
     const colour = lanes.length > 1 ? theme.ink : theme.two; // not one of the sweeps'
     /** @param {number} gap @param {number} eta */
     const py = (gap, eta) => scale(gap * gapUnit(pointAt(structure, eta, level), level));
-    pen.inside([left, top, width, height - STRIP], () => {
+    pen.drawClipped([left, top, width, height - STRIP], () => {
       for (const { x, y, stable } of branches) {
         const look = { stroke: colour, width: 1.8, dash: stable ? [] : [5, 4] };
         pen.line(x.map(px), y.map((gap, i) => py(gap, x[i])), look);

@@ -11,13 +11,13 @@
  */
 
 /** @param {string} id */
-function text(id) {
+function elementText(id) {
   return document.getElementById(id)?.textContent ?? "";
 }
 
 /** Bytes of an element of the page. @param {string} id @returns {Promise<ArrayBuffer>} */
-async function bytes(id) {
-  const letters = atob(text(id).trim());
+async function unpackedBytes(id) {
+  const letters = atob(elementText(id).trim());
   const packed = new Uint8Array(letters.length);
   for (let i = 0; i < packed.length; i++) packed[i] = letters.charCodeAt(i);
   const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
@@ -25,12 +25,12 @@ async function bytes(id) {
 }
 
 /** Everything the page carries. */
-export async function load() {
+export async function loadPayload() {
   /** @type {Table} */
-  const table = JSON.parse(text("table"));
-  const [code, data] = await Promise.all(["kernel", "data"].map(bytes));
+  const table = JSON.parse(elementText("table"));
+  const [code, data] = await Promise.all(["kernel", "data"].map(unpackedBytes));
   const compiled = { module: await WebAssembly.compile(code), variables: table.variables, loops: table.loops };
-  return { table, compiled, worker: text("worker"), diagram: shipped(table, new Float64Array(data)) };
+  return { table, compiled, worker: elementText("worker"), diagram: shippedDiagram(table, new Float64Array(data)) };
 }
 
 /**
@@ -39,7 +39,7 @@ export async function load() {
  * @param {Float64Array} data eta, frequency, amplitude, then four numbers a start for each direction
  * @returns {Diagram | null}
  */
-function shipped({ structure, settings, directions, count, low, high, level: [unit, value] }, data) {
+function shippedDiagram({ structure, settings, directions, count, low, high, level: [unit, value] }, data) {
   if (!count) return null;
   const points = Array.from({ length: count }, (_, i) => ({
     structure,

@@ -83,7 +83,7 @@ export class CanvasPen {
   }
 
   /** Keep what `strokes` draws inside a rectangle. @param {number[]} place @param {() => void} strokes */
-  inside([x, y, w, h], strokes) {
+  drawClipped([x, y, w, h], strokes) {
     this.context.save();
     this.context.beginPath();
     this.context.rect(x, y, w, h);
@@ -108,7 +108,7 @@ export class SvgPen {
   line(xs, ys, { stroke = "", width = 1, dash = [], alpha = 1 }) {
     let path = "";
     for (let i = 0, down = false; i < xs.length; i++) {
-      if (xs[i] === xs[i] && ys[i] === ys[i]) path += `${down ? "L" : "M"}${short(xs[i])} ${short(ys[i])}`;
+      if (xs[i] === xs[i] && ys[i] === ys[i]) path += `${down ? "L" : "M"}${shortNumber(xs[i])} ${shortNumber(ys[i])}`;
       down = ys[i] === ys[i];
     }
     const dashes = dash.length ? ` stroke-dasharray="${dash}"` : "";
@@ -120,21 +120,21 @@ export class SvgPen {
   /** @param {ArrayLike<number>} xs @param {ArrayLike<number>} ys @param {number} radius @param {Style} style */
   dots(xs, ys, radius, { fill = "", alpha = 1 }) {
     let path = "";
-    for (let i = 0; i < xs.length; i++) path += `M${short(xs[i])} ${short(ys[i])}h0`;
+    for (let i = 0; i < xs.length; i++) path += `M${shortNumber(xs[i])} ${shortNumber(ys[i])}h0`;
     const round = `stroke="${fill}" stroke-width="${2 * radius}" stroke-linecap="round"`;
     this.parts.push(`<path d="${path}" ${round} opacity="${alpha}"/>`);
   }
 
   /** @param {number} x @param {number} y @param {number} w @param {number} h @param {Style} style */
   box(x, y, w, h, { stroke = "none", fill = "none", width = 1, alpha = 1 }) {
-    const place = `x="${short(x)}" y="${short(y)}" width="${short(w)}" height="${short(h)}"`;
+    const place = `x="${shortNumber(x)}" y="${shortNumber(y)}" width="${shortNumber(w)}" height="${shortNumber(h)}"`;
     const look = `stroke="${stroke}" fill="${fill}" stroke-width="${width}" opacity="${alpha}"`;
     this.parts.push(`<rect ${place} ${look}/>`);
   }
 
   /** @param {number} x @param {number} y @param {string} words @param {Lettering} style */
   text(x, y, words, { anchor = "middle", turn = false, size = 12, fill = "" }) {
-    const place = `translate(${short(x)} ${short(y)})${turn ? " rotate(-90)" : ""}`;
+    const place = `translate(${shortNumber(x)} ${shortNumber(y)})${turn ? " rotate(-90)" : ""}`;
     const look = `font-family="${FONT}" font-size="${size}" fill="${fill}" text-anchor="${anchor}"`;
     const safe = words.replace(/&/g, "&amp;").replace(/</g, "&lt;");
     this.parts.push(`<text transform="${place}" dy="0.35em" ${look}>${safe}</text>`);
@@ -147,7 +147,7 @@ export class SvgPen {
   }
 
   /** Keep what `strokes` draws inside a rectangle. @param {number[]} place @param {() => void} strokes */
-  inside([x, y, w, h], strokes) {
+  drawClipped([x, y, w, h], strokes) {
     const id = `inside${++this.clips}`;
     this.parts.push(
       `<clipPath id="${id}"><rect x="${x}" y="${y}" width="${w}" height="${h}"/></clipPath>`,
@@ -157,12 +157,12 @@ export class SvgPen {
     this.parts.push("</g>");
   }
 
-  finished() {
+  toSvg() {
     return `${this.parts.join("\n")}\n</svg>\n`;
   }
 }
 
 /** @param {number} value */
-function short(value) {
+function shortNumber(value) {
   return Number(value.toFixed(2));
 }

@@ -1,9 +1,9 @@
 /** A picture on the page: a canvas, sharp on every screen, that can be saved as PNG or SVG. */
 
-import { save } from "./files.js";
-import { drawCaption, heightOf, wrapped } from "./caption.js";
+import { saveFile } from "./files.js";
+import { drawCaption, captionHeight, wrapLines } from "./caption.js";
 import { CanvasPen, SvgPen } from "./pen.js";
-import { themeOf } from "./theme.js";
+import { currentTheme } from "./theme.js";
 
 /**
  * @typedef {{width: number, height: number}} Size
@@ -33,11 +33,11 @@ export class Picture {
     this.asked = true;
     requestAnimationFrame(() => {
       this.asked = false;
-      this.paint();
+      this.drawNow();
     });
   }
 
-  paint() {
+  drawNow() {
     const { width, height } = this.size;
     if (!width || !height) return;
     const density = window.devicePixelRatio || 1;
@@ -48,7 +48,7 @@ export class Picture {
     const context = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
     context.setTransform(density, 0, 0, density, 0, 0);
     context.clearRect(0, 0, width, height);
-    this.draw(new CanvasPen(context), { width, height }, themeOf());
+    this.draw(new CanvasPen(context), { width, height }, currentTheme());
   }
 
   /** Say in words what the picture shows. @param {string} words */
@@ -60,28 +60,28 @@ export class Picture {
   savePng(name, caption) {
     const { width, height } = this.size;
     const density = Math.max(FINE, window.devicePixelRatio || 1);
-    const lines = wrapped(caption, width);
+    const lines = wrapLines(caption, width);
     const sheet = document.createElement("canvas");
-    Object.assign(sheet, { width: Math.round(width * density), height: Math.round((height + heightOf(lines)) * density) });
+    Object.assign(sheet, { width: Math.round(width * density), height: Math.round((height + captionHeight(lines)) * density) });
     const context = /** @type {CanvasRenderingContext2D} */ (sheet.getContext("2d"));
-    const theme = themeOf();
+    const theme = currentTheme();
     context.fillStyle = theme.paper;
     context.fillRect(0, 0, sheet.width, sheet.height);
     context.setTransform(density, 0, 0, density, 0, 0);
     const pen = new CanvasPen(context);
     this.draw(pen, { width, height }, theme);
     drawCaption(pen, lines, height, theme);
-    sheet.toBlob((blob) => blob && save(`${name}.png`, blob));
+    sheet.toBlob((blob) => blob && saveFile(`${name}.png`, blob));
   }
 
   /** @param {string} name of the file @param {string[]} caption */
   saveSvg(name, caption) {
     const { width, height } = this.size;
-    const theme = themeOf();
-    const lines = wrapped(caption, width);
-    const pen = new SvgPen(width, height + heightOf(lines), theme.paper);
+    const theme = currentTheme();
+    const lines = wrapLines(caption, width);
+    const pen = new SvgPen(width, height + captionHeight(lines), theme.paper);
     this.draw(pen, { width, height }, theme);
     drawCaption(pen, lines, height, theme);
-    save(`${name}.svg`, new Blob([pen.finished()], { type: "image/svg+xml" }));
+    saveFile(`${name}.svg`, new Blob([pen.toSvg()], { type: "image/svg+xml" }));
   }
 }

@@ -1,11 +1,11 @@
 /** The diagrams that were looked at: the whole, dragged regions, other parameters; back and forth. */
 
-import { empty } from "./diagram.js";
+import { emptyDiagram } from "./diagram.js";
 import { DiagramView } from "./diagram_view.js";
-import { chain, replay } from "./requests.js";
+import { requestChain, requestReplay } from "./requests.js";
 import { USUAL } from "./response.js";
-import { sameLevel } from "./excitation.js";
-import { sameStructure } from "./structure.js";
+import { isSameLevel } from "./excitation.js";
+import { isSameStructure } from "./structure.js";
 
 const QUICK = { transient: 100, samples: 40, tolerance: 1e-2 };
 const FINE = 7900; // steps over the paper's range, as `orchestrate sweep` has them
@@ -49,11 +49,11 @@ export class Regions {
   /** Look at a region of a structure's responses. @param {Structure} structure @param {Region} region @param {boolean} [quick] at low resolution, in place of the last quick one */
   open(structure, region, quick = false) {
     const { shipped } = this;
-    if (shipped && like(shipped, structure, region) && covers(shipped, region)) return this.enter(shipped, null, false);
-    const parent = this.diagram && like(this.diagram, structure, region) ? this.parentOf(region) : null;
+    if (shipped && isOfSameBeam(shipped, structure, region) && coversWhole(shipped, region)) return this.showNext(shipped, null, false);
+    const parent = this.diagram && isOfSameBeam(this.diagram, structure, region) ? this.diagramToStartFrom(region) : null;
     const settings = quick ? QUICK : USUAL;
-    const diagram = empty(structure, widened(region), quick ? 160 : this.count, settings);
-    this.enter(diagram, parent, quick);
+    const diagram = emptyDiagram(structure, widenedRegion(region), quick ? 160 : this.count, settings);
+    this.showNext(diagram, parent, quick);
     const { low, high } = this.whole;
     this.coarse = !quick && !shipped && region.low === low && region.high === high ? diagram : null;
   }
@@ -61,21 +61,21 @@ export class Regions {
   /** The whole again, as fine as the paper's Figure 6. @param {Diagram} diagram */
   refine(diagram) {
     this.coarse = null;
-    const fine = empty(diagram.structure, diagram, FINE, USUAL);
+    const fine = emptyDiagram(diagram.structure, diagram, FINE, USUAL);
     this.seen[this.place] = fine;
     this.compute(fine, diagram);
   }
 
   /** The diagram whose states a new one may begin from. @param {Region} region */
-  parentOf(region) {
+  diagramToStartFrom(region) {
     const known = [this.diagram, this.shipped].find(
-      (one) => one && one.low <= region.low && one.high >= region.high && like(one, this.diagram.structure, region),
+      (one) => one && one.low <= region.low && one.high >= region.high && isOfSameBeam(one, this.diagram.structure, region),
     );
     return known ?? this.diagram;
   }
 
   /** @param {Diagram} diagram @param {Diagram | null} parent @param {boolean} quick */
-  enter(diagram, parent, quick) {
+  showNext(diagram, parent, quick) {
     clearTimeout(this.timer);
     if (this.quick) this.seen.splice(this.place--, 1);
     this.quick = quick;
@@ -89,16 +89,16 @@ export class Regions {
   compute(diagram, parent) {
     this.order?.cancel();
     this.complete = false;
-    this.view.show(diagram, parent && parent !== diagram ? parent : null);
+    this.view.showDiagram(diagram, parent && parent !== diagram ? parent : null);
     /** @type {Take} */
-    const take = (lane, found) => this.view.add(lane.direction, found.index, found);
+    const take = (lane, found) => this.view.addResponse(lane.direction, found.index, found);
     const replayed = diagram.lanes.every((lane) => lane.starts);
-    const order = replayed ? replay(this.pool, diagram, take) : chain(this.pool, diagram, parent, take);
+    const order = replayed ? requestReplay(this.pool, diagram, take) : requestChain(this.pool, diagram, parent, take);
     this.order = order;
     void order.done.then(() => {
       if (this.order !== order) return;
       this.complete = true;
-      this.view.complete();
+      this.view.dropDiagramBelow();
       this.told(true);
       if (this.coarse === diagram) this.refine(diagram);
     });
@@ -106,7 +106,7 @@ export class Regions {
   }
 
   /** What was seen before, or after. @param {number} steps */
-  go(steps) {
+  stepThroughSeen(steps) {
     const place = Math.min(Math.max(this.place + steps, 0), this.seen.length - 1);
     if (place === this.place) return;
     this.place = place;
@@ -117,12 +117,12 @@ export class Regions {
     this.order?.cancel();
     this.order = null;
     this.complete = true;
-    this.view.show(diagram, null);
+    this.view.showDiagram(diagram, null);
     this.told(true);
   }
 
   /** Follow parameters that are being changed: quickly now, in full once they rest. @param {Structure} structure @param {Level} level @param {number} held factor of frequency ratios */
-  follow(structure, level, held) {
+  followParameters(structure, level, held) {
     const { direction } = this.diagram;
     const [low, high] = [this.diagram.low * held, this.diagram.high * held];
     this.open(structure, { low, high, direction, level }, true);
@@ -131,17 +131,17 @@ export class Regions {
 }
 
 /** Whether a diagram is of a structure that is shaken as a region says. @param {Diagram} diagram @param {Structure} structure @param {Region} region */
-function like(diagram, structure, { level }) {
-  return sameStructure(diagram.structure, structure) && sameLevel(diagram.level, level);
+function isOfSameBeam(diagram, structure, { level }) {
+  return isSameStructure(diagram.structure, structure) && isSameLevel(diagram.level, level);
 }
 
 /** Whether a region is the whole of a diagram. @param {Diagram} diagram @param {Region} region */
-function covers(diagram, { low, high, direction }) {
+function coversWhole(diagram, { low, high, direction }) {
   return diagram.direction === direction && low <= diagram.low && high >= diagram.high;
 }
 
 /** @param {Region} region @returns {Region} */
-function widened({ low, high, direction, level }) {
+function widenedRegion({ low, high, direction, level }) {
   const middle = (low + high) / 2;
   const half = Math.max((high - low) / 2, LEAST / 2);
   return { low: Math.max(middle - half, LEAST), high: middle + half, direction, level };

@@ -24,7 +24,7 @@ export const DECIDED = ["irregular", "repeated", "undecided"];
  * @param {boolean} [decides] whether its multiplicity is decided; else the instance stands at the last sample
  * @returns {Generator<undefined, Response>} it pauses
  */
-export function* respond(oscillator, point, start, settings, decides = true) {
+export function* computeResponse(oscillator, point, start, settings, decides = true) {
   const { states, largest, impacts, end, counts } = yield* oscillator.respond(point, start, settings, decides);
   const length = lengthOf(point);
   return {
@@ -41,4 +41,4 @@ export function* respond(oscillator, point, start, settings, decides = true) {
 }
 
 /** Periods after which a response is known to repeat; 0 where it is not. @param {{multiplicity: number, decided: number}} response */
-export const periodsOf = ({ multiplicity, decided }) => (decided === REPEATED ? multiplicity : 0);
+export const repeatPeriods = ({ multiplicity, decided }) => (decided === REPEATED ? multiplicity : 0);

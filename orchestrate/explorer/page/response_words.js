@@ -1,9 +1,9 @@
 /** A response in words: its numbers, its exponent, and a sentence. */
 
-import { inHertz } from "./excitation.js";
-import { periodsOf, UNDECIDED } from "./response.js";
-import { shown } from "./scale.js";
-import { scaleAt, wordsOf } from "./units.js";
+import { isInHertz } from "./excitation.js";
+import { repeatPeriods, UNDECIDED } from "./response.js";
+import { formatNumber } from "./scale.js";
+import { axisScale, axisWords } from "./units.js";
 
 /**
  * @typedef {import("./response.js").Response} Response
@@ -14,50 +14,50 @@ const DIGITS = 3; // of a mean number of impacts, wherever it is shown
 const UNDECIDED_MOTION = "Nearly repeats, or is still settling: undecided here";
 
 /** What an exponent says. @param {Exponent} exponent @returns {Kind} */
-export const kindOf = ({ verdict }) => (verdict > 0 ? "chaotic" : verdict < 0 ? "converging" : "undecided");
+export const exponentKind = ({ verdict }) => (verdict > 0 ? "chaotic" : verdict < 0 ? "converging" : "undecided");
 
 /** The same in words, with its standard error. @param {Exponent | null} exponent @param {number} repeats its period in those of the box, 0 if none */
 export function exponentWords(exponent, repeats) {
   if (!exponent) return "none of so few impacts";
   const { value, error } = exponent;
-  const within = error > 0 ? ` ± ${shown(error, 2)}` : "";
+  const within = error > 0 ? ` ± ${formatNumber(error, 2)}` : "";
   const converging = `below 0: ${repeats ? "regular" : "it converges, but has not repeated yet"}`;
-  const words = { chaotic: "above 0: chaotic", converging, undecided: "0 within its error: undecided here" }[kindOf(exponent)];
-  return `${shown(value, 3)}${within} (${words})`;
+  const words = { chaotic: "above 0: chaotic", converging, undecided: "0 within its error: undecided here" }[exponentKind(exponent)];
+  return `${formatNumber(value, 3)}${within} (${words})`;
 }
 
 /** @param {number} count */
-const countedPeriods = (count) => `${count} period${count > 1 ? "s" : ""}`;
+const periodCountWords = (count) => `${count} period${count > 1 ? "s" : ""}`;
 
 /** After how many periods a motion repeats, or how it does not: where there is an exponent, it decides. @param {{multiplicity: number, decided: number}} motion @param {Exponent | null} [exponent] */
 export function repeatWords(motion, exponent) {
-  const periods = periodsOf(motion);
-  if (periods) return countedPeriods(periods);
-  const undecided = exponent ? kindOf(exponent) !== "chaotic" : motion.decided === UNDECIDED;
+  const periods = repeatPeriods(motion);
+  if (periods) return periodCountWords(periods);
+  const undecided = exponent ? exponentKind(exponent) !== "chaotic" : motion.decided === UNDECIDED;
   return undecided ? "undecided" : "irregular";
 }
 
 /** How a beam of one's own is shaken, and how far it opens. @param {number} peak @param {Point} point @param {Level} level @returns {Record<string, string>} */
-function ownNumbers(peak, point, level) {
-  const [scale, words] = [scaleAt(point, level), wordsOf(level)];
+function shakingNumbers(peak, point, level) {
+  const [scale, words] = [axisScale(point, level), axisWords(level)];
   const { eta, frequency, amplitude } = point;
   return {
-    [words.frequency.replace("shaking ", "")]: shown(scale.line, 6),
-    [words.place.replace("displacement", "amplitude of the box")]: shown(amplitude / scale.length),
-    [words.acceleration.replace("acceleration", "acceleration of the box")]: shown((amplitude * frequency * frequency) / scale.acceleration),
-    [`largest ${words.gap}`]: shown((peak * amplitude * eta * eta) / scale.length),
+    [words.frequency.replace("shaking ", "")]: formatNumber(scale.line, 6),
+    [words.place.replace("displacement", "amplitude of the box")]: formatNumber(amplitude / scale.length),
+    [words.acceleration.replace("acceleration", "acceleration of the box")]: formatNumber((amplitude * frequency * frequency) / scale.acceleration),
+    [`largest ${words.gap}`]: formatNumber((peak * amplitude * eta * eta) / scale.length),
   };
 }
 
 /** Numbers of a response for people. @param {Response} response @param {Point} point @param {Level} level @param {Exponent | null} [exponent] @returns {Record<string, string>} */
-export function numbersOf(response, point, level, exponent) {
+export function responseNumbers(response, point, level, exponent) {
   const { peak, impacts, contact } = response;
   /** @type {Record<string, string>} */
-  const first = inHertz(level) ? ownNumbers(peak, point, level) : { "frequency ratio η": shown(point.eta, 6), "largest gap ξ": shown(peak, 6) };
-  const count = shown(impacts, DIGITS);
+  const first = isInHertz(level) ? shakingNumbers(peak, point, level) : { "frequency ratio η": formatNumber(point.eta, 6), "largest gap ξ": formatNumber(peak, 6) };
+  const count = formatNumber(impacts, DIGITS);
   return {
     ...first,
-    "impacts a period": periodsOf(response) === 1 ? count : `${count} on average`,
+    "impacts a period": repeatPeriods(response) === 1 ? count : `${count} on average`,
     "repeats after": repeatWords(response, exponent),
     "stick together": !contact ? "no" : staysShut(response) ? "always" : "for a while",
   };
@@ -70,32 +70,32 @@ export const averageWords = (periods) => `averages over ${periods} periods; from
 const staysShut = ({ peak, impacts, contact, gaps }) => peak === 0 || (contact && !impacts && gaps.every((gap) => peak - gap < 1e-9));
 
 /** So many impacts a period, or a revolution. @param {number} impacts @param {string} [each] */
-export function countOf(impacts, each = "a period") {
-  const count = shown(impacts, DIGITS);
+export function impactCountWords(impacts, each = "a period") {
+  const count = formatNumber(impacts, DIGITS);
   return `${count} impact${count === "1" ? "" : "s"} ${each}`;
 }
 
 /** The same of a motion: of periods that differ it is the mean. @param {number} impacts @param {number} multiplicity */
-export const meanCountOf = (impacts, multiplicity) => `${multiplicity === 1 ? "" : "on average "}${countOf(impacts)}`;
+export const meanImpactCountWords = (impacts, multiplicity) => `${multiplicity === 1 ? "" : "on average "}${impactCountWords(impacts)}`;
 
 /** A response in a sentence. @param {Response} response @param {Exponent | null | undefined} exponent if it is known @param {boolean} seen whether contact is among what is shown @param {string} opening what is said of halves that stay closed */
-export function sentenceOf(response, exponent, seen, opening) {
+export function responseSentence(response, exponent, seen, opening) {
   const { impacts, contact } = response;
-  const periods = periodsOf(response);
+  const periods = repeatPeriods(response);
   if (!impacts) return staysShut(response) ? `The halves stay closed: no impact.${opening}` : "The halves never touch.";
-  const count = meanCountOf(impacts, periods);
+  const count = meanImpactCountWords(impacts, periods);
   if (periods) {
     const every = periods === 1 ? "every shaking period" : `after ${periods} shaking periods`;
     return `Repeats ${every}: ${count}${contact ? ", then the halves stick together for a while" : ""}.`;
   }
   const sticks = `; at times${seen ? "" : ", outside the periods shown,"} the halves stick together`;
-  return `${withoutRepeating(response, exponent)}, ${count}${contact ? sticks : ""}.`;
+  return `${unrepeatedWords(response, exponent)}, ${count}${contact ? sticks : ""}.`;
 }
 
 /** Where there is an exponent, it decides. @param {Response} response @param {Exponent | null | undefined} exponent */
-function withoutRepeating({ decided, multiplicity, gaps }, exponent) {
-  const guess = multiplicity ? `, perhaps after ${countedPeriods(multiplicity)}` : "";
+function unrepeatedWords({ decided, multiplicity, gaps }, exponent) {
+  const guess = multiplicity ? `, perhaps after ${periodCountWords(multiplicity)}` : "";
   const undecided = `Undecided whether it repeats${guess}`;
   if (!exponent) return decided === UNDECIDED ? undecided : `Irregular: does not repeat in ${gaps.length} periods`;
-  return { chaotic: "Chaos: never repeats", converging: `${undecided}: it converges`, undecided: UNDECIDED_MOTION }[kindOf(exponent)];
+  return { chaotic: "Chaos: never repeats", converging: `${undecided}: it converges`, undecided: UNDECIDED_MOTION }[exponentKind(exponent)];
 }

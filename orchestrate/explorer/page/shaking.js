@@ -1,11 +1,11 @@
 /** The fields of how the box is shaken: frequency, level, and the units that numbers have. */
 
-import { inHertz, LEVELS, PAPER, pointAt } from "./excitation.js";
-import { onNumber, showNumber } from "./field.js";
+import { isInHertz, LEVELS, PAPER, pointAt } from "./excitation.js";
+import { watchNumber, showNumber } from "./field.js";
 import { ETAS } from "./link.js";
-import { shown } from "./scale.js";
+import { formatNumber } from "./scale.js";
 import { lengthOf, rescaled } from "./structure.js";
-import { frequencyName, frequencyUnit, levelFrom, levelShown, ownNames, ownUnit, ratioFrom } from "./units.js";
+import { frequencyName, ratioUnit, levelOfTyped, levelInShownUnit, shownUnitNames, shownUnit, ratioOfShown } from "./units.js";
 
 /**
  * @typedef {{choose: (eta: number, exactly: boolean) => void,
@@ -29,34 +29,34 @@ export class Shaking {
     this.structure = structure;
     this.level = level;
     at("hertz-label").textContent = frequencyName().startsWith("ratio") ? `as ${frequencyName()}` : `in ${frequencyName()}`;
-    at("own").textContent = `your own: ${ownNames()}`;
-    this.connect(acts);
+    at("own").textContent = `your own: ${shownUnitNames()}`;
+    this.connectFields(acts);
   }
 
   /** @param {Acts} acts */
-  connect({ choose, change }) {
+  connectFields({ choose, change }) {
     const { eta, number, hertz, level } = this.inputs;
-    onNumber(eta, (value) => choose(value, false), "input");
-    onNumber(number, (value) => choose(value, true));
-    onNumber(hertz, (value) => {
-      const ends = ETAS.map((end) => end * frequencyUnit(this.structure, this.level));
-      if (value < ends[0] || value > ends[1]) return `expected ${ends.map((end) => shown(end)).join(" to ")} for this beam`;
-      choose(ratioFrom(value, this.structure, this.level), true);
+    watchNumber(eta, (value) => choose(value, false), "input");
+    watchNumber(number, (value) => choose(value, true));
+    watchNumber(hertz, (value) => {
+      const ends = ETAS.map((end) => end * ratioUnit(this.structure, this.level));
+      if (value < ends[0] || value > ends[1]) return `expected ${ends.map((end) => formatNumber(end)).join(" to ")} for this beam`;
+      choose(ratioOfShown(value, this.structure, this.level), true);
     });
-    onNumber(level, (value) => change(this.structure, levelFrom(value, this.level)));
+    watchNumber(level, (value) => change(this.structure, levelOfTyped(value, this.level)));
     this.at("own-beam").addEventListener("click", () => {
-      if (!inHertz(this.level)) change(...this.converted(true));
+      if (!isInHertz(this.level)) change(...this.beamInOtherUnits(true));
       const first = /** @type {HTMLInputElement} */ (this.at("f1")); // ready to be typed into
       first.scrollIntoView({ block: innerWidth > 900 ? "nearest" : "center" });
       first.select();
     });
     this.at("units").addEventListener("change", ({ target }) => {
-      change(...this.converted(/** @type {HTMLSelectElement} */ (target).value === "own"));
+      change(...this.beamInOtherUnits(/** @type {HTMLSelectElement} */ (target).value === "own"));
     });
   }
 
   /** The same motions of a beam of one's own, or in the paper's units. @param {boolean} own @returns {[Structure, Level]} */
-  converted(own) {
+  beamInOtherUnits(own) {
     const [omega, level] = own ? [OMEGA, FIRST] : [1, PAPER];
     const digits = own ? 17 : 12;
     const other = rescaled(this.structure, this.units, omega, 1, 1, digits);
@@ -65,29 +65,29 @@ export class Shaking {
   }
 
   /** @param {Structure} structure @param {Level} level */
-  show(structure, level) {
+  showBeam(structure, level) {
     Object.assign(this, { structure, level });
-    const own = inHertz(level);
+    const own = isInHertz(level);
     for (const [id, hidden] of Object.entries({ "own-shaking": !own, "paper-number": own })) this.at(id).hidden = hidden;
     /** @type {HTMLSelectElement} */ (this.at("units")).value = own ? "own" : "paper";
-    const { name, value } = levelShown(level);
-    const [least, most] = LEVELS[level.unit].map((end) => levelShown({ ...level, value: end }).value);
+    const { name, value } = levelInShownUnit(level);
+    const [least, most] = LEVELS[level.unit].map((end) => levelInShownUnit({ ...level, value: end }).value);
     Object.assign(this.inputs.level, { min: least, max: most });
     this.at("level-label").textContent = `level, ${name}${name === "g" ? " (of gravity)" : ""}`;
     showNumber(this.inputs.level, value);
   }
 
   /** The chosen frequency. @param {number} eta */
-  mark(eta) {
+  showFrequency(eta) {
     const { eta: slider, number, hertz } = this.inputs;
     showNumber(slider, eta);
     showNumber(number, eta, DIGITS);
     // other units have a digit less: the frequency is one in Hz of nine digits
-    showNumber(hertz, eta * frequencyUnit(this.structure, this.level), ownUnit("frequency").size === 1 ? FINE : FINE - 1);
+    showNumber(hertz, eta * ratioUnit(this.structure, this.level), shownUnit("frequency").size === 1 ? FINE : FINE - 1);
   }
 
   /** Frequencies that the slider reaches. @param {number} low @param {number} high */
-  reach(low, high) {
+  setSliderRange(low, high) {
     const { eta } = this.inputs;
     Object.assign(eta, { min: low, max: high, step: (high - low) / 2000 });
   }

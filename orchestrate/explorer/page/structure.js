@@ -78,10 +78,10 @@ export function withNumber(s, name, value) {
 }
 
 /** What contradicts itself in a structure, in words. @param {Structure} s */
-export const wrongIn = (s) => (s.stroke && s.stroke < s.clearance ? "expected a largest gap of 0, or not below that at rest" : "");
+export const contradictionIn = (s) => (s.stroke && s.stroke < s.clearance ? "expected a largest gap of 0, or not below that at rest" : "");
 
 /** All numbers that a field may show. @param {Structure} s @returns {Record<string, number>} */
-export function numbersIn(s) {
+export function fieldNumbers(s) {
   const [ratios, halves] = [ratiosOf(s), halvesOf(s)];
   const own = { mass1: s.m1, mass2: s.m2, zeta: 100 * halves.zeta1, gap: 1000 * s.clearance, most: 1000 * s.stroke };
   const paper = Object.fromEntries(Object.entries(SAME).map(([name, other]) => [name, s[other]]));
@@ -128,7 +128,7 @@ export function columnsAt(points, indices) {
 }
 
 /** @param {Columns} columns @param {number} i @returns {Point} */
-export function pointOf({ structure, eta, frequency, amplitude }, i) {
+export function pointAtIndex({ structure, eta, frequency, amplitude }, i) {
   return { structure, eta: eta[i], frequency: frequency[i], amplitude: amplitude[i] };
 }
 
@@ -144,6 +144,6 @@ export function lengthOf(point) {
 }
 
 /** @param {Structure} a @param {Structure} b */
-export function sameStructure(a, b) {
+export function isSameStructure(a, b) {
   return Object.keys(a).every((name) => a[/** @type {keyof Structure} */ (name)] === b[/** @type {keyof Structure} */ (name)]);
 }

@@ -1,11 +1,11 @@
 /** What a worker computes, each task a generator that yields its answer part by part. */
 
-import { destination, startAt } from "./basin.js";
+import { followToAttractor, startOfCell } from "./basin.js";
 import { Coupled } from "./coupled.js";
 import { Oscillator } from "./kernel.js";
-import { record } from "./motion.js";
-import { respond } from "./response.js";
-import { periodOf, pointOf } from "./structure.js";
+import { recordMotion } from "./motion.js";
+import { computeResponse } from "./response.js";
+import { periodOf, pointAtIndex } from "./structure.js";
 import { waveform } from "./waveform.js";
 
 /** @typedef {import("./response.js").Response} Response */
@@ -18,10 +18,10 @@ const SPAN = { periods: 64, points: 1024, highest: 20 };
  * @param {Oscillator} instance
  * @param {{columns: Columns, starts: Float64Array, indices: number[], settings: Settings}} asked
  */
-function* replay(instance, { columns, starts, indices, settings }) {
+function* replayResponses(instance, { columns, starts, indices, settings }) {
   for (let i = 0; i < indices.length; i++) {
     const start = starts.subarray(4 * i, 4 * i + 4);
-    yield answer(indices[i], yield* respond(instance, pointOf(columns, i), start, settings));
+    yield answerOf(indices[i], yield* computeResponse(instance, pointAtIndex(columns, i), start, settings));
   }
 }
 
@@ -30,16 +30,16 @@ function* replay(instance, { columns, starts, indices, settings }) {
  * @param {Oscillator} instance
  * @param {{columns: Columns, indices: number[], start: number[], settings: Settings}} asked
  */
-function* chain(instance, { columns, indices, start, settings }) {
+function* chainResponses(instance, { columns, indices, start, settings }) {
   for (let i = 0; i < indices.length; i++) {
-    const found = yield* respond(instance, pointOf(columns, i), start, settings);
+    const found = yield* computeResponse(instance, pointAtIndex(columns, i), start, settings);
     start = found.end;
-    yield answer(indices[i], found);
+    yield answerOf(indices[i], found);
   }
 }
 
 /** @param {number} index @param {Response} found */
-function answer(index, { gaps, peak, impacts, contact, multiplicity, decided, start, end }) {
+function answerOf(index, { gaps, peak, impacts, contact, multiplicity, decided, start, end }) {
   return { index, gaps, peak, impacts, contact, multiplicity, decided, start, end };
 }
 
@@ -50,7 +50,7 @@ function answer(index, { gaps, peak, impacts, contact, multiplicity, decided, st
  * @param {(own: Oscillator) => Generator<undefined, T>} run
  * @returns {Generator<undefined, T>}
  */
-function* stopping({ library }, run) {
+function* withStoppingInstance({ library }, run) {
   const own = new Oscillator(library, true);
   try {
     return yield* run(own);
@@ -64,10 +64,10 @@ function* stopping({ library }, run) {
  * @param {Oscillator} instance
  * @param {{point: Point, start: number[], settings: Settings, periods: number, points: number}} asked
  */
-function* motion(instance, { point, start, settings, periods, points }) {
+function* computeMotion(instance, { point, start, settings, periods, points }) {
   const first = settings.transient + settings.samples;
-  const response = yield* respond(instance, point, start, settings);
-  yield { response, motion: yield* stopping(instance, (own) => record(own, point, start, first, periods, points)) };
+  const response = yield* computeResponse(instance, point, start, settings);
+  yield { response, motion: yield* withStoppingInstance(instance, (own) => recordMotion(own, point, start, first, periods, points)) };
 }
 
 /**
@@ -75,9 +75,9 @@ function* motion(instance, { point, start, settings, periods, points }) {
  * @param {Oscillator} instance
  * @param {{point: Point, start: number[], periods: number}} asked
  */
-function* section(instance, { point, start, periods }) {
+function* computeSection(instance, { point, start, periods }) {
   for (let done = 0; done < periods; done += 200) {
-    const found = yield* respond(instance, point, start, { transient: 0, samples: 200, tolerance: 1e-2 }, false);
+    const found = yield* computeResponse(instance, point, start, { transient: 0, samples: 200, tolerance: 1e-2 }, false);
     start = found.end;
     yield found.states;
   }
@@ -88,17 +88,17 @@ function* section(instance, { point, start, periods }) {
  * @param {Oscillator} instance
  * @param {{point: Point, start: number[]}} asked
  */
-function* spectra(instance, { point, start }) {
-  instance.begin(point, start);
+function* computeSpectraAndExponent(instance, { point, start }) {
+  instance.initialize(point, start);
   const delaminated = yield* instance.spectrum(point, 0, SPAN);
   if (point.structure.wall) yield { delaminated, bonded: null }; // nothing can be glued to it
   else {
     const glued = { ...point, structure: { ...point.structure, bonded: 1 } };
-    const settled = yield* respond(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 }, false);
+    const settled = yield* computeResponse(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 }, false);
     const bonded = yield* instance.spectrum(glued, 2001, SPAN);
     yield { delaminated, bonded, bondedState: settled.end };
   }
-  yield { exponent: yield* stopping(instance, (own) => own.exponent(point, start)) };
+  yield { exponent: yield* withStoppingInstance(instance, (own) => own.exponent(point, start)) };
 }
 
 /**
@@ -106,8 +106,8 @@ function* spectra(instance, { point, start }) {
  * @param {Oscillator} instance
  * @param {{point: Point, start: number[], periods: number, pitch: number, rate: number}} asked
  */
-function* sound(instance, { point, start, periods, pitch, rate }) {
-  const { impactTime, impactEnergy } = yield* stopping(instance, (own) => record(own, point, start, 0, periods, 1));
+function* computeSound(instance, { point, start, periods, pitch, rate }) {
+  const { impactTime, impactEnergy } = yield* withStoppingInstance(instance, (own) => recordMotion(own, point, start, 0, periods, 1));
   const time = impactTime.map((t) => t / periodOf(point));
   yield waveform({ time, energy: impactEnergy, turns: periods }, pitch, rate);
 }
@@ -117,11 +117,11 @@ function* sound(instance, { point, start, periods, pitch, rate }) {
  * @param {Oscillator} instance
  * @param {{run: Run | null, start: Start, voltages: number[]}} asked a voltage for each step
  */
-function* drive({ library }, { run, start, voltages }) {
+function* runDrive({ library }, { run, start, voltages }) {
   const coupled = new Coupled(library, start, run);
   try {
-    const rows = coupled.run(voltages);
-    yield { rows, run: coupled.memory() };
+    const rows = coupled.runSteps(voltages);
+    yield { rows, run: coupled.stateOfRun() };
   } finally {
     coupled.close();
   }
@@ -132,14 +132,17 @@ function* drive({ library }, { run, start, voltages }) {
  * @param {Oscillator} instance
  * @param {{point: Point, plane: Plane, cells: [number, number][]}} asked
  */
-function* basin(instance, { point, plane, cells }) {
+function* computeBasin(instance, { point, plane, cells }) {
   for (const [column, row] of cells) {
-    yield { column, row, ...(yield* destination(instance, point, startAt(point, plane, column, row))) };
+    yield { column, row, ...(yield* followToAttractor(instance, point, startOfCell(point, plane, column, row))) };
   }
 }
 
 /** @type {Record<string, (instance: Oscillator, asked: any) => Generator<unknown>>} */
-const TASKS = { replay, chain, motion, section, spectra, sound, drive, basin };
+const TASKS = {
+  ...{ replay: replayResponses, chain: chainResponses, motion: computeMotion, section: computeSection },
+  ...{ spectra: computeSpectraAndExponent, sound: computeSound, drive: runDrive, basin: computeBasin },
+};
 
 /**
  * Run a task on an instance of its own.
@@ -148,7 +151,7 @@ const TASKS = { replay, chain, motion, section, spectra, sound, drive, basin };
  * @param {Library} library
  * @returns {Generator<unknown>}
  */
-export function* perform(task, asked, library) {
+export function* performTask(task, asked, library) {
   const instance = new Oscillator(library);
   try {
     yield* TASKS[task](instance, asked);

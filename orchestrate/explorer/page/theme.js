@@ -3,7 +3,7 @@
 /** @typedef {Record<"paper" | "ink" | "soft" | "grid" | "one" | "two" | "hit" | "contact" | "mark" | "up" | "down", string>} Theme */
 
 /** @returns {Theme} */
-export function themeOf() {
+export function currentTheme() {
   const style = getComputedStyle(document.documentElement);
   /** @param {string} name */
   const colour = (name) => style.getPropertyValue(`--${name}`).trim();
@@ -23,7 +23,7 @@ export function themeOf() {
 }
 
 /** Red, green and blue of a colour `#rrggbb`. @param {string} colour @returns {[number, number, number]} */
-export function channels(colour) {
+export function rgbOf(colour) {
   const value = parseInt(colour.slice(1), 16);
   return [value >> 16, (value >> 8) & 255, value & 255];
 }

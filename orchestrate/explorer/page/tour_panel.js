@@ -7,21 +7,21 @@ export class TourPanel {
     this.links = tour.querySelectorAll("a");
     this.texts = /** @type {NodeListOf<HTMLElement>} */ (tour.querySelectorAll("[data-text]"));
     this.name = ""; // of the stop that is shown
-    tour.querySelector("#words-link")?.addEventListener("click", showWords);
-    for (const button of tour.querySelectorAll("[data-close]")) button.addEventListener("click", () => this.show(""));
+    tour.querySelector("#words-link")?.addEventListener("click", openWordList);
+    for (const button of tour.querySelectorAll("[data-close]")) button.addEventListener("click", () => this.markStop(""));
   }
 
   /** The view of the stop that a link names, if it says no more; the stop is then marked. @param {string} fragment */
-  follow(fragment) {
+  openStopOfLink(fragment) {
     const words = new URLSearchParams(fragment.replace(/^#/, ""));
     const name = words.get("tour") ?? "";
     const known = Object.hasOwn(this.stops, name);
-    this.show(known ? name : "");
+    this.markStop(known ? name : "");
     return known && [...words].length === 1 ? this.stops[name] : null;
   }
 
   /** Mark a stop and show the text of its step; without a name the tour is closed. @param {string} name */
-  show(name) {
+  markStop(name) {
     this.name = name;
     const step = [...this.links].find((link) => link.hash === `#tour=${name}`)?.dataset.step ?? "";
     for (const link of this.links) {
@@ -32,14 +32,14 @@ export class TourPanel {
   }
 
   /** Something else than the stop is shown now; its step's text and links stay. */
-  leave() {
+  unmarkStop() {
     this.name = "";
     for (const link of this.links) if (!link.closest("ol")) link.ariaCurrent = null;
   }
 }
 
 /** Open the list of words; the link's hash stays the view's. @param {Event} event */
-function showWords(event) {
+function openWordList(event) {
   event.preventDefault();
   const words = /** @type {HTMLDetailsElement} */ (document.getElementById("words"));
   words.open = true;

@@ -1,7 +1,7 @@
 /** In which units a motion is shown: the paper's; of a beam of one's own Hz, mm, g and seconds, or what the page was asked for. */
 
-import { GRAVITY, inHertz } from "./excitation.js";
-import { shown } from "./scale.js";
+import { GRAVITY, isInHertz } from "./excitation.js";
+import { formatNumber } from "./scale.js";
 import { lengthOf, omegaOf, periodOf } from "./structure.js";
 
 /**
@@ -26,55 +26,55 @@ const RATIO = "shaking frequency η = Ω/ω";
 let asked = USUAL;
 
 /** Say, once, in which units a beam of one's own is shown. @param {Asked} units */
-export const showIn = (units) => (asked = units);
+export const setShownUnits = (units) => (asked = units);
 
 /** Whether frequencies of a beam of one's own are shown as ratios. */
-const asRatio = () => asked.frequency === "eta";
+const isRatioShown = () => asked.frequency === "eta";
 
 /** The unit of a kind of numbers of a beam of one's own: its name, and how many Hz, mm or g it is. @param {"frequency" | "length" | "acceleration"} kind */
-export function ownUnit(kind) {
+export function shownUnit(kind) {
   const word = asked[kind] === "eta" ? "Hz" : asked[kind];
   return { name: SPELLED[word] ?? word, size: SIZES[/** @type {keyof SIZES} */ (word)] / SIZES[USUAL[kind]] };
 }
 
 /** The unit of the shaking's frequency. */
-export const frequencyName = () => (asRatio() ? "ratio η = Ω/ω" : ownUnit("frequency").name);
+export const frequencyName = () => (isRatioShown() ? "ratio η = Ω/ω" : shownUnit("frequency").name);
 
 /** All units of a beam of one's own. */
-export const ownNames = () => [asRatio() ? "η" : frequencyName(), ownUnit("length").name, ownUnit("acceleration").name].join(", ");
+export const shownUnitNames = () => [isRatioShown() ? "η" : frequencyName(), shownUnit("length").name, shownUnit("acceleration").name].join(", ");
 
 /** How strongly the box is shaken. @param {Level} level */
-export function levelShown({ unit, value }) {
-  const { name, size } = ownUnit(unit === "mm" ? "length" : "acceleration");
+export function levelInShownUnit({ unit, value }) {
+  const { name, size } = shownUnit(unit === "mm" ? "length" : "acceleration");
   const number = size === 1 ? value : Number((value / size).toPrecision(7));
-  return { name, value: number, text: `${shown(number)} ${name}` };
+  return { name, value: number, text: `${formatNumber(number)} ${name}` };
 }
 
 /** The level of a number that was typed; digits that a command's option keeps. @param {number} value @param {Level} level @returns {Level} */
-export function levelFrom(value, { unit }) {
-  const { size } = ownUnit(unit === "mm" ? "length" : "acceleration");
+export function levelOfTyped(value, { unit }) {
+  const { size } = shownUnit(unit === "mm" ? "length" : "acceleration");
   return { unit, value: size === 1 ? value : Number((value * size).toPrecision(9)) };
 }
 
 /** The option of a command that answers in these units, where they are not the usual ones. @param {Level} level */
 export function unitsOption(level) {
   const names = [asked.frequency, asked.length, asked.acceleration, asked.time].filter(Boolean).join(",");
-  return !inHertz(level) || names === "Hz,mm,g" ? "" : ` --units ${names}`;
+  return !isInHertz(level) || names === "Hz,mm,g" ? "" : ` --units ${names}`;
 }
 
 /** @param {Level} level @returns {Words} */
-export function wordsOf(level) {
-  if (!inHertz(level)) return { ...PAPER, time: TIMES[asked.time || "periods"] };
-  const length = ownUnit("length").name;
+export function axisWords(level) {
+  if (!isInHertz(level)) return { ...PAPER, time: TIMES[asked.time || "periods"] };
+  const length = shownUnit("length").name;
   return {
-    frequency: asRatio() ? RATIO : `shaking frequency, ${frequencyName()}`,
+    frequency: isRatioShown() ? RATIO : `shaking frequency, ${frequencyName()}`,
     gap: `gap, ${length}`,
     gapSpeed: `gap velocity, ${length}/s`,
     place: `displacement, ${length}`,
     speed: `velocity, ${length}/s`,
     time: TIMES[asked.time || "s"],
-    line: asRatio() ? "frequency / ω" : `frequency, ${frequencyName()}`,
-    acceleration: `acceleration, ${ownUnit("acceleration").name}`,
+    line: isRatioShown() ? "frequency / ω" : `frequency, ${frequencyName()}`,
+    acceleration: `acceleration, ${shownUnit("acceleration").name}`,
   };
 }
 
@@ -89,18 +89,18 @@ const PAPER = {
 };
 
 /** What the shaking's frequency is in rad/s where the axis has 1. @param {Structure} structure @param {Level} level */
-function frequencySize(structure, level) {
-  if (!inHertz(level) || asked.frequency === "eta") return omegaOf(structure);
+function frequencyOfOne(structure, level) {
+  if (!isInHertz(level) || asked.frequency === "eta") return omegaOf(structure);
   return SIZES[asked.frequency];
 }
 
 /** @param {Point} point @param {Level} level @returns {Scale} */
-export function scaleAt(point, level) {
+export function axisScale(point, level) {
   const period = periodOf(point);
-  if (inHertz(level)) {
+  if (isInHertz(level)) {
     const length = SIZES[asked.length];
     const time = asked.time === "periods" ? period : 1;
-    return { length, speed: length, time, line: point.frequency / frequencySize(point.structure, level), acceleration: SIZES[asked.acceleration] };
+    return { length, speed: length, time, line: point.frequency / frequencyOfOne(point.structure, level), acceleration: SIZES[asked.acceleration] };
   }
   const length = lengthOf(point);
   const omega = omegaOf(point.structure);
@@ -108,10 +108,10 @@ export function scaleAt(point, level) {
 }
 
 /** What a frequency ratio of one is on the axis. @param {Structure} structure @param {Level} level */
-export const frequencyUnit = (structure, level) => omegaOf(structure) / frequencySize(structure, level);
+export const ratioUnit = (structure, level) => omegaOf(structure) / frequencyOfOne(structure, level);
 
 /** A frequency on the axis as the ratio. @param {number} value @param {Structure} structure @param {Level} level */
-export const ratioFrom = (value, structure, level) => (value * frequencySize(structure, level)) / omegaOf(structure);
+export const ratioOfShown = (value, structure, level) => (value * frequencyOfOne(structure, level)) / omegaOf(structure);
 
 /** What a gap of one a eta^2 is on the axis. @param {Point} point @param {Level} level */
-export const gapUnit = (point, level) => lengthOf(point) / scaleAt(point, level).length;
+export const gapUnit = (point, level) => lengthOf(point) / axisScale(point, level).length;

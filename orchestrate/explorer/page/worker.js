@@ -2,7 +2,7 @@
 
 import { Library } from "./kernel.js";
 import { useLibrary } from "./model.js";
-import { perform } from "./tasks.js";
+import { performTask } from "./tasks.js";
 
 const SLICE = 8; // ms
 
@@ -22,18 +22,18 @@ scope.onmessage = (/** @type {MessageEvent} */ { data }) => {
     library = new Library(data.compiled);
     useLibrary(library);
   }
-  if (data.task) tasks.push({ id: data.id, urgent: data.urgent, run: perform(data.task, data.asked, library) });
-  if (data.cancel !== undefined) drop(data.cancel);
-  rouse();
+  if (data.task) tasks.push({ id: data.id, urgent: data.urgent, run: performTask(data.task, data.asked, library) });
+  if (data.cancel !== undefined) dropTask(data.cancel);
+  wakeUp();
 };
 
 /** @param {number} id */
-function drop(id) {
+function dropTask(id) {
   const place = tasks.findIndex((task) => task.id === id);
   if (place >= 0) tasks.splice(place, 1)[0].run.return(undefined);
 }
 
-function rouse() {
+function wakeUp() {
   if (!awake && tasks.length) {
     awake = true;
     wake.port2.postMessage(null); // lets messages that wait come first
@@ -45,14 +45,14 @@ wake.port1.onmessage = () => {
   turn = 1 - turn;
   const task = tasks.find(({ urgent }) => urgent) ?? tasks[tasks.length - 1 - turn] ?? tasks[0];
   if (!task) return;
-  const message = slice(task);
-  if (message.done) drop(task.id);
+  const message = runSlice(task);
+  if (message.done) dropTask(task.id);
   scope.postMessage(message);
-  rouse();
+  wakeUp();
 };
 
 /** @param {{id: number, run: Generator<unknown>}} task */
-function slice({ id, run }) {
+function runSlice({ id, run }) {
   const end = performance.now() + SLICE;
   /** @type {unknown[]} */
   const parts = [];

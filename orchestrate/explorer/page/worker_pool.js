@@ -20,7 +20,7 @@ export class WorkerPool {
   }
 
   /** Worker least recently given something to do. */
-  next() {
+  nextWorker() {
     this.workers.push(/** @type {Worker} */ (this.workers.shift()));
     return this.workers[this.workers.length - 1];
   }
@@ -35,7 +35,7 @@ export class WorkerPool {
    */
   ask(task, asked, onparts, urgent = false) {
     const id = ++this.number;
-    const worker = this.next();
+    const worker = this.nextWorker();
     worker.postMessage({ id, task, asked, urgent });
     /** @type {() => void} */
     let finish = () => {};
