@@ -24,20 +24,20 @@ HEADER = "fmi.h"  # of loops
 VISIBLE = '__attribute__((visibility("default")))'
 KERNELS = {  # headers that a source may include, translated from Python
     "rules.h": {
-        "decide": repetition.decide,
-        "repeat": repetition.repeat,
-        "confirm": repetition.confirm,
-        "nearest": repetition.nearest,
-        "rest_and_threshold": linear_response.write_rest_and_threshold,
+        "write_decided_multiplicity": repetition.write_decided_multiplicity,
+        "write_least_multiplicity": repetition.write_least_multiplicity,
+        "confirm_by_impacts": repetition.confirm_by_impacts,
+        "write_nearest_state": repetition.write_nearest_state,
+        "write_rest_and_threshold": linear_response.write_rest_and_threshold,
     },
-    "turn.h": {"turn": turn.turn},
-    "deviations.h": {"deviate": deviations.deviate},
+    "turn.h": {"write_cosine_and_sine": turn.write_cosine_and_sine},
+    "deviations.h": {"write_deviation_matrices": deviations.write_deviation_matrices},
     "orbits.h": {
-        "flow": orbits.flow,
-        "steady": orbits.steady,
-        "field": orbits.field,
-        "motion": orbits.motion,
-        "segments": orbits.segments,
+        "write_free_flows": orbits.write_free_flows,
+        "write_steady_states": orbits.write_steady_states,
+        "write_rates_of_states": orbits.write_rates_of_states,
+        "write_later_states": orbits.write_later_states,
+        "write_segment_equations": orbits.write_segment_equations,
     },
 }
 

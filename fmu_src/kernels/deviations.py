@@ -8,14 +8,14 @@ In the subset of Python that :mod:`fmu_src.export.translation` translates, over 
 memory, for its constants and certified roots; tables follow.
 """
 
-from .numerics.elementary import fraction, sincos_turns
+from .numerics.elementary import fraction_of_turn, sincos_turns
 from .oscillator import memory as at
-from .oscillator.excitation import begin_segment, drive_at, mirror
+from .oscillator.excitation import begin_segment, drive_and_rate_at, mirror_system
 from .oscillator.impact import common_velocity
 from .oscillator.motion import begin_state, set_phase
-from .oscillator.parameters import derive
+from .oscillator.parameters import derive_constants
 from .oscillator.response import fundamental_solutions
-from .oscillator.roots import walk
+from .oscillator.roots import walk_to_event
 
 # impacts, the end of the span in s; then of each impact a row, a matrix, and how long contact
 # lasts, in tau
@@ -28,10 +28,10 @@ SMALLEST = 1e-300  # closing speed: a grazing impact has none, its matrix is ver
 WORK = 1e7  # evaluations until a release is given up
 
 
-def deviate(m, time):
+def write_deviation_matrices(m, time):
     """Write each impact's matrix to the next one's deviation, m and m/tau; and contact times."""
     m[at.SIDE] = 1.0
-    derive(m)
+    derive_constants(m)
     m[at.CUBIC_SET] = 1.0
     begin_segment(m)
     count = int(m[IMPACTS])
@@ -41,25 +41,25 @@ def deviate(m, time):
         if i + 1 < count:
             end = m[row + ROW + TIME]
         left, touching = m[at.OMEGA] * (end - m[row + TIME]), 0.0
-        go_to_side(m, row)
-        write_saltation(m, row, matrix)
+        mirror_to_impact_side(m, row)
+        write_saltation_matrix(m, row, matrix)
         if m[row + STICKS] != 0.0:
             touching = contact_duration(m, row, left)
-            flow(m, matrix, at.OSCILLATOR_3, at.OSCILLATOR_3, touching)
-        flow(m, matrix, at.OSCILLATOR_1, at.OSCILLATOR_2, left - touching)
+            multiply_by_free_flow(m, matrix, at.OSCILLATOR_3, at.OSCILLATOR_3, touching)
+        multiply_by_free_flow(m, matrix, at.OSCILLATOR_1, at.OSCILLATOR_2, left - touching)
         m[TABLES + (ROW + STATES * STATES) * count + i] = touching
     return 0
 
 
-def go_to_side(m, row):
+def mirror_to_impact_side(m, row):
     """Go over to the system, or its mirror image, in which an impact is at the inner end."""
     gap = m[row + X2] - m[row + X1] + m[at.CLEARANCE]
     side = 1.0 if 2.0 * gap < m[at.LIMIT] else -1.0
     if side != m[at.SIDE]:  # rarely
-        mirror(m)
+        mirror_system(m)
 
 
-def write_saltation(m, row, matrix):
+def write_saltation_matrix(m, row, matrix):
     """Write ``R + (F+ - R F-) n^T/(n F-)`` of an impact; in contact, both to their centre."""
     side, one, two = m[at.SIDE], m[at.SHARE], m[at.MU] * m[at.SHARE]
     if m[at.WALL] != 0.0:  # infinitely heavy
@@ -86,31 +86,31 @@ def write_saltation(m, row, matrix):
     v1, v2 = side * m[row + V1] / m[at.OMEGA], side * m[row + V2] / m[at.OMEGA]
     common = common_velocity(m, v1, v2)
     b1, b2 = common + two * closing, common - one * closing
-    sine, cosine = sincos_turns(fraction(m[at.ETA_TURNS] * m[at.OMEGA] * m[row + TIME]))
-    drive_1, _ = drive_at(m, at.OSCILLATOR_1, cosine, sine, 0.0)
-    drive_2, _ = drive_at(m, at.OSCILLATOR_2, cosine, sine, 0.0)
-    after_1 = acceleration(m, at.OSCILLATOR_1, drive_1, x1, v1)
-    after_2 = acceleration(m, at.OSCILLATOR_2, drive_2, x2, v2)
-    before_1 = acceleration(m, at.OSCILLATOR_1, drive_1, x1, b1)
-    before_2 = acceleration(m, at.OSCILLATOR_2, drive_2, x2, b2)
+    sine, cosine = sincos_turns(fraction_of_turn(m[at.ETA_TURNS] * m[at.OMEGA] * m[row + TIME]))
+    drive_1, _ = drive_and_rate_at(m, at.OSCILLATOR_1, cosine, sine, 0.0)
+    drive_2, _ = drive_and_rate_at(m, at.OSCILLATOR_2, cosine, sine, 0.0)
+    after_1 = oscillator_acceleration(m, at.OSCILLATOR_1, drive_1, x1, v1)
+    after_2 = oscillator_acceleration(m, at.OSCILLATOR_2, drive_2, x2, v2)
+    before_1 = oscillator_acceleration(m, at.OSCILLATOR_1, drive_1, x1, b1)
+    before_2 = oscillator_acceleration(m, at.OSCILLATOR_2, drive_2, x2, b2)
     scale = 1.0 / max(closing, SMALLEST)
-    add_jump(m, matrix + OF_X1, (v1 - b1) * scale)
-    add_jump(m, matrix + OF_X2, (v2 - b2) * scale)
+    add_jump_times_normal(m, matrix + OF_X1, (v1 - b1) * scale)
+    add_jump_times_normal(m, matrix + OF_X2, (v2 - b2) * scale)
     jump_1 = after_1 - m[matrix + OF_V1 + 2] * before_1 - m[matrix + OF_V1 + 3] * before_2
     jump_2 = after_2 - m[matrix + OF_V2 + 2] * before_1 - m[matrix + OF_V2 + 3] * before_2
-    add_jump(m, matrix + OF_V1, jump_1 * scale)
-    add_jump(m, matrix + OF_V2, jump_2 * scale)
+    add_jump_times_normal(m, matrix + OF_V1, jump_1 * scale)
+    add_jump_times_normal(m, matrix + OF_V2, jump_2 * scale)
 
 
-def acceleration(m, b, drive, x, v):
+def oscillator_acceleration(m, b, drive, x, v):
     """Return the right-hand side of (6), displacements from the unloaded spring."""
     return drive - 2.0 * m[b + at.DAMPING] * v - m[b + at.OMEGA_SQUARED] * x
 
 
-def add_jump(m, place, jump):
+def add_jump_times_normal(m, slot, jump):
     """Add what a row of the matrix jumps by, times the normal (-1, 1, 0, 0)."""
-    m[place] += jump
-    m[place + 1] -= jump
+    m[slot] += jump
+    m[slot + 1] -= jump
 
 
 def contact_duration(m, row, span):
@@ -124,16 +124,16 @@ def contact_duration(m, row, span):
     begin_state(m, x, v, x, v, 0.0, 0)
     if m[at.MODE] != at.CONTACT:
         return 0.0
-    walk(m, span)
+    walk_to_event(m, span)
     return min(m[at.END], span)
 
 
-def flow(m, matrix, one, other, time):
+def multiply_by_free_flow(m, matrix, oscillator_1, oscillator_2, time):
     """Multiply a matrix by the free flow of both masses over a time, (10); a wall has none."""
     for mass in range(2):
-        b = other
+        b = oscillator_2
         if mass == 0:
-            b = one
+            b = oscillator_1
         c, s, _ = fundamental_solutions(m, b, time)
         damping, square = m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
         here = 0.0 if mass == 1 and m[at.WALL] != 0.0 else 1.0

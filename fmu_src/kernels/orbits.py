@@ -26,47 +26,47 @@ LONGEST_TIME = 1e12  # in tau: an iteration that has gone astray
 NOT_A_NUMBER = float("nan")
 
 
-def flow(m, time):
+def write_free_flows(m, time):
     """Write, for rows (duration, mode), how the free part (x, v) of each mass turns."""
     count = int(m[ROWS])
     for i in range(count):
         row = TABLE + 2 * i
-        turn_free_parts(m, m[row], m[row + 1], TABLE + 2 * count + 8 * i)
+        write_free_flow(m, m[row], m[row + 1], TABLE + 2 * count + 8 * i)
     return 0
 
 
-def steady(m, time):
+def write_steady_states(m, time):
     """Write, for rows (phase, mode), the states of the steady response."""
     count = int(m[ROWS])
     for i in range(count):
         row = TABLE + 2 * i
         sine, cosine = sincos_turns(m[row] / TWO_PI)
-        put_steady(m, m[row + 1], cosine, sine, TABLE + 2 * count + 4 * i)
+        write_steady_state(m, m[row + 1], cosine, sine, TABLE + 2 * count + 4 * i)
     return 0
 
 
-def field(m, time):
+def write_rates_of_states(m, time):
     """Write, for rows (phase, mode, state), the rates of the states, right-hand sides of (6)."""
     count = int(m[ROWS])
     for i in range(count):
         row = TABLE + 6 * i
         sine, _ = sincos_turns(m[row] / TWO_PI)
-        put_rates(m, m[row + 1], sine, row + 2, TABLE + 6 * count + 4 * i)
+        write_rates(m, m[row + 1], sine, row + 2, TABLE + 6 * count + 4 * i)
     return 0
 
 
-def motion(m, time):
+def write_later_states(m, time):
     """Write, for rows (start's phase, mode, later phase, state), the later state and its rates."""
     count = int(m[ROWS])
     for i in range(count):
         row, to = TABLE + 7 * i, TABLE + 7 * count + 8 * i
-        run(m, m[row], m[row + 1], m[row + 2], row + 3, to, TABLE + 15 * count)
+        write_state_at_end(m, m[row], m[row + 1], m[row + 2], row + 3, to, TABLE + 15 * count)
         sine, _ = sincos_turns(m[row + 2] / TWO_PI)
-        put_rates(m, m[row + 1], sine, to, to + 4)
+        write_rates(m, m[row + 1], sine, to, to + 4)
     return 0
 
 
-def segments(m, time):
+def write_segment_equations(m, time):
     """Write each segment's residual, derivatives by both nodes, and states at begin and end."""
     count = int(m[ROWS])
     residual = TABLE + NODE * count
@@ -77,19 +77,21 @@ def segments(m, time):
         if i + 1 == count:
             following, end = TABLE, m[SPAN]
         end += m[following]
-        begin_segment_at(m, node, starts + 4 * i)
-        run(m, m[node], m[node + 4], end, starts + 4 * i, arrivals + 4 * i, spare)
-        put_residual(m, following, arrivals + 4 * i, residual + 4 * i)
-        put_before(m, node, following, starts + 4 * i, before + 16 * i, spare)
-        put_after(m, node, following, end, arrivals + 4 * i, after + 16 * i, spare)
+        write_state_after_node(m, node, starts + 4 * i)
+        write_state_at_end(m, m[node], m[node + 4], end, starts + 4 * i, arrivals + 4 * i, spare)
+        write_residual(m, following, arrivals + 4 * i, residual + 4 * i)
+        write_derivatives_by_first_node(m, node, following, starts + 4 * i, before + 16 * i, spare)
+        write_derivatives_by_last_node(
+            m, node, following, end, arrivals + 4 * i, after + 16 * i, spare
+        )
     return 0
 
 
-def oscillator_at(mode, mass):
+def oscillator_slot(mode, mass):
     return OSCILLATORS + WIDTH * (mass if mode == IN_FLIGHT else int(mode) + 1)
 
 
-def solutions(m, b, time):
+def fundamental_solutions_at_any_time(m, b, time):
     """Return C and S of (10), also before the start."""
     late = abs(time)
     if not late < LONGEST_TIME:  # rarely
@@ -101,7 +103,7 @@ def solutions(m, b, time):
     return c * grown, -s * grown
 
 
-def turn_free_parts(m, time, mode, to):
+def write_free_flow(m, time, mode, to):
     """Write the four factors of the free part of each mass over a time; a wall forgets them."""
     for mass in range(2):
         place = to + 4 * mass
@@ -112,8 +114,8 @@ def turn_free_parts(m, time, mode, to):
             for k in range(4):
                 m[place + k] = m[to + k]
         else:
-            b = oscillator_at(IN_FLIGHT, mass) if mode == IN_FLIGHT else OSCILLATORS + 2 * WIDTH
-            c, s = solutions(m, b, time)
+            b = oscillator_slot(IN_FLIGHT, mass) if mode == IN_FLIGHT else OSCILLATORS + 2 * WIDTH
+            c, s = fundamental_solutions_at_any_time(m, b, time)
             damped = m[b + at.DAMPING] * s
             m[place] = c + damped
             m[place + 1] = s
@@ -121,18 +123,18 @@ def turn_free_parts(m, time, mode, to):
             m[place + 3] = c - damped
 
 
-def put_steady(m, mode, cosine, sine, to):
+def write_steady_state(m, mode, cosine, sine, to):
     for mass in range(2):
-        b = oscillator_at(mode, mass)
+        b = oscillator_slot(mode, mass)
         m[to + mass] = m[b + BY_COSINE] * cosine + m[b + BY_SINE] * sine + m[b + OFFSET_BY]
         m[to + 2 + mass] = m[RATIO] * (m[b + BY_SINE] * cosine - m[b + BY_COSINE] * sine)
     if mode == AT_OUTER:
         m[to + 1] += m[ROOM]
 
 
-def put_rates(m, mode, sine, state, to):
+def write_rates(m, mode, sine, state, to):
     for mass in range(2):
-        b = oscillator_at(mode, mass)
+        b = oscillator_slot(mode, mass)
         x, v = m[state + mass], m[state + 2 + mass]
         rate = sine * m[b + DRIVEN_BY] + m[b + PUSHED_BY] - 2.0 * m[b + at.DAMPING] * v
         m[to + mass] = v
@@ -141,59 +143,59 @@ def put_rates(m, mode, sine, state, to):
         m[to + 3] = m[to + 2]
 
 
-def inwards_at(m, node):
+def parting_direction(m, node):
     """Return the sign of the gap's acceleration that parts the masses at a node."""
     return -1.0 if m[node + 6] != 0.0 else 1.0
 
 
-def apart_at(m, node):
+def gap_at_node(m, node):
     return m[ROOM] if m[node + 6] != 0.0 else 0.0
 
 
-def parts(m, node):
+def is_flight_after_impact(m, node):
     return m[node + 4] == IN_FLIGHT and m[node + 5] == 0.0
 
 
-def begin_segment_at(m, node, to):
+def write_state_after_node(m, node, to):
     """Write the state just after a node (15)."""
     speed = 0.0
-    if parts(m, node):
+    if is_flight_after_impact(m, node):
         speed = m[RESTITUTION] * m[node + 3] / (1.0 + m[SLOWER] * m[node + 3])
-    speed *= inwards_at(m, node)
+    speed *= parting_direction(m, node)
     m[to] = m[node + 1]
-    m[to + 1] = m[node + 1] + apart_at(m, node)
+    m[to + 1] = m[node + 1] + gap_at_node(m, node)
     m[to + 2] = m[node + 2] - m[SHARE_TWO] * speed
     m[to + 3] = m[node + 2] + m[SHARE_ONE] * speed
 
 
-def run(m, phase, mode, end, start, to, flows):
+def write_state_at_end(m, phase, mode, end, start, to, flows):
     """Write the state at an end from that at a phase, and how its free parts turn until there."""
-    turn_free_parts(m, (end - phase) / m[RATIO], mode, flows)
+    write_free_flow(m, (end - phase) / m[RATIO], mode, flows)
     sine, cosine = sincos_turns(phase / TWO_PI)
-    put_steady(m, mode, cosine, sine, to)
+    write_steady_state(m, mode, cosine, sine, to)
     x1, v1 = m[start] - m[to], m[start + 2] - m[to + 2]
     x2, v2 = m[start + 1] - m[to + 1], m[start + 3] - m[to + 3]
     sine, cosine = sincos_turns(end / TWO_PI)
-    put_steady(m, mode, cosine, sine, to)
+    write_steady_state(m, mode, cosine, sine, to)
     m[to] += m[flows] * x1 + m[flows + 1] * v1
     m[to + 2] += m[flows + 2] * x1 + m[flows + 3] * v1
     m[to + 1] += m[flows + 4] * x2 + m[flows + 5] * v2
     m[to + 3] += m[flows + 6] * x2 + m[flows + 7] * v2
 
 
-def put_reduced(m, node, state, to, stride):
+def write_gap_centre_and_closing_speed(m, node, state, to, stride):
     """Write gap, centre (x, v) and closing speed of a state before a node."""
     x1, x2, v1, v2 = m[state], m[state + 1], m[state + 2], m[state + 3]
     m[to] = x2 - x1
     m[to + stride] = m[SHARE_ONE] * x1 + m[SHARE_TWO] * x2
     m[to + 2 * stride] = m[SHARE_ONE] * v1 + m[SHARE_TWO] * v2
-    m[to + 3 * stride] = inwards_at(m, node) * (v1 - v2)
+    m[to + 3 * stride] = parting_direction(m, node) * (v1 - v2)
 
 
-def put_residual(m, node, arrival, to):
+def write_residual(m, node, arrival, to):
     """Write what is left of a segment's equations at the node that it ends in."""
-    apart = apart_at(m, node)
-    put_reduced(m, node, arrival, to, 1)
+    apart = gap_at_node(m, node)
+    write_gap_centre_and_closing_speed(m, node, arrival, to, 1)
     m[to] -= apart
     m[to + 1] -= m[SHARE_TWO] * apart + m[node + 1]
     m[to + 2] -= m[node + 2]
@@ -208,12 +210,14 @@ def contact_force(m, node, sine):
     """Return the contact force f (18) at a node, from mass 1 at an end; < 0: pressed."""
     one, two = OSCILLATORS, OSCILLATORS + WIDTH
     load = m[two + LOAD_BY] + (m[two + PUSHED_BY] - m[one + PUSHED_BY])
-    load -= m[two + at.OMEGA_SQUARED] * apart_at(m, node)
+    load -= m[two + at.OMEGA_SQUARED] * gap_at_node(m, node)
     rate = m[BY_VELOCITY] * m[node + 2] + m[BY_PLACE] * m[node + 1]
-    return inwards_at(m, node) * (rate + (m[two + DRIVEN_BY] - m[one + DRIVEN_BY]) * sine + load)
+    return parting_direction(m, node) * (
+        rate + (m[two + DRIVEN_BY] - m[one + DRIVEN_BY]) * sine + load
+    )
 
 
-def put_before(m, node, following, start, to, flows):
+def write_derivatives_by_first_node(m, node, following, start, to, flows):
     """Write the derivatives of a segment's equations by the node that it begins at."""
     sine, _ = sincos_turns(m[node] / TWO_PI)
     shift = flows + 8
@@ -221,40 +225,40 @@ def put_before(m, node, following, start, to, flows):
         for k in range(4):
             m[shift + k] = 0.0
         if unknown == 0:
-            put_rates(m, m[node + 4], sine, start, shift)
+            write_rates(m, m[node + 4], sine, start, shift)
             for k in range(4):
                 m[shift + k] = -m[shift + k] / m[RATIO]
         elif unknown < 3:
             m[shift + 2 * unknown - 2] = 1.0
             m[shift + 2 * unknown - 1] = 1.0
-        elif parts(m, node):
+        elif is_flight_after_impact(m, node):
             slower = 1.0 / (1.0 + m[SLOWER] * m[node + 3])
-            rate = inwards_at(m, node) * m[RESTITUTION] * slower * slower
+            rate = parting_direction(m, node) * m[RESTITUTION] * slower * slower
             m[shift + 2] = -rate * m[SHARE_TWO]
             m[shift + 3] = rate * m[SHARE_ONE]
         for mass in range(2):
             x, v, factor = m[shift + mass], m[shift + 2 + mass], flows + 4 * mass
             m[shift + mass] = m[factor] * x + m[factor + 1] * v
             m[shift + 2 + mass] = m[factor + 2] * x + m[factor + 3] * v
-        put_reduced(m, following, shift, to + unknown, EQUATIONS)
+        write_gap_centre_and_closing_speed(m, following, shift, to + unknown, EQUATIONS)
         if m[following + 5] != 0.0:
             m[to + unknown] = 0.0
             m[to + 3 * EQUATIONS + unknown] = 0.0
 
 
-def put_after(m, node, following, end, arrival, to, spare):
+def write_derivatives_by_last_node(m, node, following, end, arrival, to, spare):
     """Write the derivatives of a segment's equations by the node that it ends in."""
     sine, cosine = sincos_turns(end / TWO_PI)
     for k in range(16):
         m[to + k] = 0.0
-    put_rates(m, m[node + 4], sine, arrival, spare)
-    put_reduced(m, following, spare, to, EQUATIONS)
+    write_rates(m, m[node + 4], sine, arrival, spare)
+    write_gap_centre_and_closing_speed(m, following, spare, to, EQUATIONS)
     for k in range(EQUATIONS):
         m[to + EQUATIONS * k] /= m[RATIO]
         if k > 0:
             m[to + EQUATIONS * k + k] = -1.0
     if m[following + 5] != 0.0:
-        sign, one, two = inwards_at(m, following), OSCILLATORS, OSCILLATORS + WIDTH
+        sign, one, two = parting_direction(m, following), OSCILLATORS, OSCILLATORS + WIDTH
         m[to] = sign * (m[two + DRIVEN_BY] - m[one + DRIVEN_BY]) * cosine
         m[to + 1] = sign * m[BY_PLACE]
         m[to + 2] = sign * m[BY_VELOCITY]

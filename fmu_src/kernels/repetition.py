@@ -1,4 +1,4 @@
-"""After how many periods a response repeats: :func:`decide`, written once for Python and C.
+"""After how many periods a response repeats, decided by one code for Python and C.
 
 In the subset of Python that :mod:`fmu_src.export.translation` translates, over a flat memory: a
 head, the stroboscopic states as they come, some of them over the motion's size, a row for each
@@ -7,11 +7,12 @@ co-ordinate, and room for deviations.
 
 # slots of the head, then the states
 COUNT, FREQUENCY, GAP, TOLERANCE, MULTIPLICITY, DECIDED, DEVIATION, LATER, AWAY = range(9)
-# of :func:`confirm`: impacts over the samples, over as many periods as it repeats after, and
-# whether no motion without impacts exists
+# of :func:`confirm_by_impacts`: impacts over the samples, over as many periods as it repeats
+# after, and whether no motion without impacts exists
 IMPACTS, OWN_IMPACTS, MUST = range(9, 12)
 SIZE, SIZE_OF_GAP, SIZE_OF_RATE = range(12, 15)  # of displacements, of the gap and of its rate
-# of :func:`nearest`: the number of the state, its distance, and the state whose neighbour it is
+# of :func:`write_nearest_state`: the number of the state, its distance, and the state whose
+# neighbour it is
 NEAREST, DISTANCE, GIVEN = range(15, 18)
 HEAD = 21
 STATE, COLUMNS = 4, 6  # numbers of a state, and of a scaled one: the gap and its rate come last
@@ -32,7 +33,7 @@ def memory_size(count: int) -> int:
     return HEAD + (STATE + COLUMNS + 1) * count
 
 
-def decide(m, time):
+def write_decided_multiplicity(m, time):
     """Decide a response's multiplicity: its deviations must have died or be decaying.
 
     Of the later half of the samples, as parts of the motion's size:
@@ -46,29 +47,29 @@ def decide(m, time):
     - *Undecided* too if only n up to three quarters of all samples agrees.
     - *Irregular*: all else, also where the states of each n that agrees drift steadily.
     """
-    scale(m, int(m[COUNT] / 2))
-    count, limit, tolerance = int(m[LATER]), longest(m), m[TOLERANCE]
+    write_scaled_states(m, int(m[COUNT] / 2))
+    count, limit, tolerance = int(m[LATER]), max_multiplicity(m), m[TOLERANCE]
     many = int(count / 4)
     nearly, drifting, n = 0, 0, next_repetition(m, 0, limit, tolerance)
     while n > 0:
         largest = measure_deviations(m, n)
         if n > many:
             if nearly == 0 and drifting == 0 and largest <= NEGLIGIBLE * tolerance:
-                return conclude(m, n, REPEATED)
+                return write_conclusion(m, n, REPEATED)
             if nearly == 0 and drifting == 0:
                 nearly = n
             break
-        growth = growth_ratio(m, count - n)
+        growth = deviation_growth(m, count - n)
         spread = spread_over_returns(m, 0, count, n)
         left = ROUNDING
         minimum = spread / MAX_DRIFT
         if spread > ROUNDING:
-            left = remaining_change(m, n, spread)
+            left = estimate_remaining_drift(m, n, spread)
             minimum = tolerance
         minimum = max(minimum, 4.0 * left)
         if left <= tolerance and has_persistent_difference(m, n, minimum):
-            return conclude(m, n, REPEATED)
-        if spread > tolerance and not changes(growth):
+            return write_conclusion(m, n, REPEATED)
+        if spread > tolerance and not is_beyond_chance(growth):
             drifting = n
         elif nearly == 0:
             nearly = n
@@ -80,28 +81,28 @@ def decide(m, time):
         if last > nearly:
             last = nearly
     else:
-        scale(m, 0)
+        write_scaled_states(m, 0)
     for shorter in range(1, last + 1):
         if contraction_ratio(m, shorter) < ratio:
-            return conclude(m, shorter, UNDECIDED)
+            return write_conclusion(m, shorter, UNDECIDED)
     if nearly == 0 and drifting == 0:  # of all samples: few states come back after n periods
         nearly = next_repetition(m, limit, int(m[COUNT]) - limit, tolerance)
     if nearly > 0:
-        return conclude(m, nearly, UNDECIDED)
-    return conclude(m, 0, IRREGULAR)
+        return write_conclusion(m, nearly, UNDECIDED)
+    return write_conclusion(m, 0, IRREGULAR)
 
 
-def repeat(m, time):
+def write_least_multiplicity(m, time):
     """Find the least multiplicity within the tolerance, and the largest deviation from it."""
-    scale(m, int(m[COUNT] / 2))
-    n = next_repetition(m, 0, longest(m), m[TOLERANCE])
+    write_scaled_states(m, int(m[COUNT] / 2))
+    n = next_repetition(m, 0, max_multiplicity(m), m[TOLERANCE])
     m[DEVIATION] = INFINITE
     if n > 0:
         m[DEVIATION] = measure_deviations(m, n)
-    return conclude(m, n, IRREGULAR)
+    return write_conclusion(m, n, IRREGULAR)
 
 
-def confirm(m, time):
+def confirm_by_impacts(m, time):
     """Make a decision undecided where impacts contradict it.
 
     - *Repeated*: the samples do not have the impacts of a motion with so many in n periods, up to
@@ -110,7 +111,7 @@ def confirm(m, time):
     """
     n, found, own = int(m[MULTIPLICITY]), m[IMPACTS], m[OWN_IMPACTS]
     if m[DECIDED] == IRREGULAR and found == 0.0:
-        return conclude(m, 1, UNDECIDED)
+        return write_conclusion(m, 1, UNDECIDED)
     if m[DECIDED] != REPEATED:
         return 0
     whole = int(m[COUNT] / n)
@@ -123,10 +124,10 @@ def confirm(m, time):
     return 0
 
 
-def nearest(m, time):
+def write_nearest_state(m, time):
     """Write the number of the state nearest to a given one, and its distance over the size."""
-    scale(m, 0)
-    count, rows = int(m[LATER]), scaled_rows(m)
+    write_scaled_states(m, 0)
+    count, rows = int(m[LATER]), first_scaled_slot(m)
     x1, x2 = m[GIVEN] / m[SIZE], m[GIVEN + 1] / m[SIZE]
     v1, v2 = m[GIVEN + 2] / m[FREQUENCY], m[GIVEN + 3] / m[FREQUENCY]
     gap, rate = (m[GIVEN + 1] - m[GIVEN]) / m[SIZE_OF_GAP], (v2 - v1) / m[SIZE_OF_RATE]
@@ -143,18 +144,18 @@ def nearest(m, time):
     return 0
 
 
-def lacks_impacts(impacts, n, must):
+def lacks_impacts(impacts, n, must_impact):
     """Return whether no impacts are too few for n periods to last."""
-    return impacts == 0.0 and (must != 0.0 or n > 1)
+    return impacts == 0.0 and (must_impact != 0.0 or n > 1)
 
 
-def conclude(m, n, decided):
+def write_conclusion(m, n, decided):
     m[MULTIPLICITY] = n
     m[DECIDED] = decided
     return 0
 
 
-def longest(m):
+def max_multiplicity(m):
     """Return the largest number of periods to test: a quarter of the samples."""
     quarter = int(m[COUNT] / 4)
     if quarter < 1:
@@ -162,7 +163,7 @@ def longest(m):
     return quarter
 
 
-def scale(m, first):
+def write_scaled_states(m, first):
     """Write the states from ``first`` on, a row per co-ordinate, over the motion's size or gap."""
     count = int(m[COUNT])
     later = count - first
@@ -194,20 +195,20 @@ def scale(m, first):
         m[rows + 5 * later + k] = (v2 - v1) / of_rate
 
 
-def scaled_rows(m):
+def first_scaled_slot(m):
     return HEAD + STATE * int(m[COUNT])
 
 
 def next_repetition(m, before, limit, tolerance):
     """Return the next number of periods after which all states agree within the tolerance, or 0."""
-    count, rows = int(m[LATER]), scaled_rows(m)
+    count, rows = int(m[LATER]), first_scaled_slot(m)
     for n in range(before + 1, limit + 1):
-        if n < count and agree(m, rows, count, n, tolerance):
+        if n < count and do_states_agree(m, rows, count, n, tolerance):
             return n
     return 0
 
 
-def agree(m, rows, count, n, tolerance):
+def do_states_agree(m, rows, count, n, tolerance):
     for k in range(count - n):
         for column in range(COLUMNS):
             at = rows + column * count + k
@@ -218,7 +219,7 @@ def agree(m, rows, count, n, tolerance):
 
 def measure_deviations(m, n):
     """Write the largest difference of each state from that n periods before; return the largest."""
-    count, rows, away = int(m[LATER]), scaled_rows(m), int(m[AWAY])
+    count, rows, away = int(m[LATER]), first_scaled_slot(m), int(m[AWAY])
     largest = 0.0
     for k in range(count - n):
         deviation = 0.0
@@ -230,7 +231,7 @@ def measure_deviations(m, n):
     return largest
 
 
-def largest_between(m, first, last):
+def largest_deviation_between(m, first, last):
     away = int(m[AWAY])
     largest = 0.0
     for k in range(first, last):
@@ -238,23 +239,26 @@ def largest_between(m, first, last):
     return largest
 
 
-def growth_ratio(m, length):
+def deviation_growth(m, length):
     """Return the maximum of the later half of deviations over that of the earlier half."""
     half = int(length / 2)
-    early, late = largest_between(m, 0, half), largest_between(m, length - half, length)
+    early, late = (
+        largest_deviation_between(m, 0, half),
+        largest_deviation_between(m, length - half, length),
+    )
     if early == 0.0 or late == 0.0:
         return 1.0
     return late / early
 
 
-def changes(growth):
+def is_beyond_chance(growth):
     """Return whether a ratio of deviations is more than chance makes."""
     return growth > CHANCE or growth * CHANCE < 1.0
 
 
 def spread_over_returns(m, first, last, n):
     """Return how far states in a range lie apart at most that n, 2n, 3n ... periods separate."""
-    count, rows = int(m[LATER]), scaled_rows(m)
+    count, rows = int(m[LATER]), first_scaled_slot(m)
     widest = 0.0
     for column in range(COLUMNS):
         row = rows + column * count
@@ -269,7 +273,7 @@ def spread_over_returns(m, first, last, n):
     return widest
 
 
-def remaining_change(m, n, spread):
+def estimate_remaining_drift(m, n, spread):
     """Estimate what n-periodic states still drift: q of the spread, a geometric series."""
     ratio = contraction_ratio(m, n)
     if ratio >= MAX_DYING_RATIO:
@@ -293,11 +297,11 @@ def contraction_ratio(m, n):
             end = begin + int(length / BLOCKS)
             if block < length % BLOCKS:
                 end = end + 1
-            largest = largest_between(m, begin, end)
+            largest = largest_deviation_between(m, begin, end)
             if largest >= before:
                 return 1.0
             before = largest
-        return growth_ratio(m, length)
+        return deviation_growth(m, length)
     early = spread_over_returns(m, 0, half, n)
     late = spread_over_returns(m, count - half, count, n)
     if early == 0.0:
@@ -316,8 +320,8 @@ def has_persistent_difference(m, n, minimum):
         if n % divisor == 0:
             measure_deviations(m, divisor)
             length = count - divisor
-            if largest_between(m, length - n, length) <= minimum:
+            if largest_deviation_between(m, length - n, length) <= minimum:
                 return False
-            if changes(growth_ratio(m, length)):
+            if is_beyond_chance(deviation_growth(m, length)):
                 return False
     return True

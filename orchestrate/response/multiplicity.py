@@ -3,9 +3,9 @@
 A tolerance decides little: a transient that turns round, or that changes sides as next to a
 period doubling, comes back closer after some periods than after one; a torus comes back as close as
 one likes after enough of them; and a narrow period doubling stays within any tolerance. So the rule
-(:func:`fmu_src.kernels.repetition.decide`, called by the loop of responses) follows how deviations
-develop: those of a response that repeats have died, or decay.
-:func:`fmu_src.kernels.repetition.confirm` makes it undecided where impacts contradict it.
+(``write_decided_multiplicity`` of :mod:`fmu_src.kernels.repetition`, called by the loop of
+responses) follows how deviations develop: those of a response that repeats have died, or decay.
+Its ``confirm_by_impacts`` makes the decision undecided where impacts contradict it.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
 SIZE = re.compile(r"(\d+) bytes \((\w+)")
 INDIRECT = "__indirect_call"
 # what makes a message; no step that is long enough to change the time and succeeds goes through it
-MESSAGES = ("complain", "refuse", "refuse_step", "warn_short_step", "explain", "append")
+MESSAGES = ("report_reason", "refuse", "refuse_step", "warn_short_step", "format_message", "append")
 CALLS = {  # FMI 3.0's, by what they are for
     "a step": "fmi3DoStep",
     "outputs": "fmi3GetFloat64",

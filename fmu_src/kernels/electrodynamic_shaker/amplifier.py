@@ -9,29 +9,29 @@ holding takes. Its terms are those of a prescribed current in both cases.
 """
 
 from . import memory as at
-from .inputs import write_inputs, write_source
-from .series import copy_source, write_constant, write_prescribed_motion
+from .inputs import write_input_series, write_source_series
+from .series import write_constant_series, write_motion_of_current, write_source_into
 
 SAME = 1e-12  # relative: a current so near to a new command has no way to go
 
 
-def decide_limits(m):
+def decide_active_limits(m):
     """Decide which limits act from the present state's beginning on."""
     h = m[at.CURRENT_SPACING]
     m[at.CLIPPED] = 0.0
-    write_inputs(m, h)
-    clip_command(m)
-    write_source(m)
+    write_input_series(m, h)
+    decide_clipping(m)
+    write_source_series(m)
     m[at.HELD] = 0.0
     m[at.OTHER_SIDE] = 1.0
     m[at.OTHER_ORDER] = 0.0
     if m[at.CURRENT_CONTROL] != 0.0:
-        follow_command(m, h)
+        decide_voltage_limit(m, h)
     elif m[at.OTHER_LIMIT] > 0.0:
-        limit_current(m, h)
+        decide_current_limit(m, h)
 
 
-def leading_term(m, series, terms, lowest):
+def first_nonzero_term(m, series, terms, lowest):
     """Return the number of the first term from ``lowest`` on that is not zero, else ``terms``."""
     order = lowest
     while order < terms and m[series + order] == 0.0:
@@ -39,7 +39,7 @@ def leading_term(m, series, terms, lowest):
     return order
 
 
-def clip_command(m):
+def decide_clipping(m):
     limit = m[at.COMMAND_LIMIT]
     side = 1.0 if m[at.COMMAND_SERIES] >= 0.0 else -1.0
     m[at.COMMAND_SIDE] = side
@@ -47,7 +47,7 @@ def clip_command(m):
     if limit == 0.0:
         return
     write_guard(m, at.COMMAND_SERIES, at.CUBIC, side, -limit)
-    order = leading_term(m, at.GUARD, at.TERMS, int(m[at.COMMAND_LOWEST]))
+    order = first_nonzero_term(m, at.GUARD, at.TERMS, int(m[at.COMMAND_LOWEST]))
     m[at.COMMAND_ORDER] = order
     if order < at.TERMS and m[at.GUARD + order] > 0.0:
         m[at.CLIPPED] = side
@@ -60,7 +60,7 @@ def write_guard(m, series, terms, factor, constant):
     m[at.GUARD] += constant
 
 
-def limit_current(m, h):
+def decide_current_limit(m, h):
     """Decide whether the current of a voltage amplifier is held at its limit."""
     limit, lags = m[at.OTHER_LIMIT], m[at.COIL_INDUCTANCE] > 0.0
     current = m[at.STATE + at.COIL_CURRENT]
@@ -72,15 +72,15 @@ def limit_current(m, h):
     if lags and side * current < limit:
         return
     m[at.STATE + at.COIL_CURRENT] = side * limit
-    write_constant(m, at.CURRENT_SERIES, side * limit)
-    write_prescribed_motion(m, h)
+    write_constant_series(m, at.CURRENT_SERIES, side * limit)
+    write_motion_of_current(m, h)
     write_guard(m, at.VOLTAGE_SERIES, at.TERMS, -side, 0.0)
     for k in range(at.CUBIC):
         m[at.GUARD + k] += side * m[at.SOURCE_SERIES + k]
-    decide_held(m, side, lags)
+    decide_held_by_guard(m, side, lags)
 
 
-def follow_command(m, h):
+def decide_voltage_limit(m, h):
     """Decide whether the voltage of a current amplifier is held at its limit.
 
     A current that is not the command's is on its way there; without a voltage limit it jumps.
@@ -97,21 +97,21 @@ def follow_command(m, h):
     m[at.STATE + at.COIL_CURRENT] = source
     if limit == 0.0:
         return
-    copy_source(m, at.CURRENT_SERIES)
-    write_prescribed_motion(m, h)
+    write_source_into(m, at.CURRENT_SERIES)
+    write_motion_of_current(m, h)
     side = 1.0 if m[at.VOLTAGE_SERIES] >= 0.0 else -1.0
     m[at.OTHER_SIDE] = side
     write_guard(m, at.VOLTAGE_SERIES, at.TERMS, side, -limit)
-    decide_held(m, side, lags)
+    decide_held_by_guard(m, side, lags)
 
 
-def decide_held(m, side, lags):
+def decide_held_by_guard(m, side, lags):
     """Decide by the balance in GUARD whether the other quantity is held.
 
     The guard of what is decided begins with as many zeros as the balance; where it is one of a
     current that follows by its inductance, with one more.
     """
-    order = leading_term(m, at.GUARD, at.TERMS, int(m[at.OTHER_LOWEST]))
+    order = first_nonzero_term(m, at.GUARD, at.TERMS, int(m[at.OTHER_LOWEST]))
     held = order < at.TERMS and m[at.GUARD + order] > 0.0
     if m[at.CURRENT_CONTROL] == 0.0 and order == at.TERMS:
         held = True

@@ -3,7 +3,7 @@
 from . import memory as at
 
 
-def cubic_begins(m, flag, inputs):
+def does_cubic_restart(m, flag, inputs):
     """Return whether a cubic restarts: an input changed, or one of a cubic that moves was set."""
     moves = False
     for i in range(at.CUBIC):
@@ -15,23 +15,23 @@ def cubic_begins(m, flag, inputs):
     return moves and m[flag] != 0.0
 
 
-def keep_inputs(m):
+def store_inputs(m):
     """Make the inputs as they are now those of the present state."""
     for i in range(2 * at.CUBIC):
         m[at.STATE_INPUTS + i] = m[at.COMMAND + i]
 
 
-def write_inputs(m, h):
+def write_input_series(m, h):
     """Write command, source and force over an interval of length ``h``."""
     now = m[at.INTERVAL] * m[at.SPACING]
     age = ((m[at.ORIGIN] - m[at.COMMAND_TIME]) + m[at.ORIGIN_LOW]) + now
-    write_cubic(m, at.COMMAND_SERIES, at.STATE_INPUTS, age, h)
+    write_cubic_series(m, at.COMMAND_SERIES, at.STATE_INPUTS, age, h)
     age = ((m[at.ORIGIN] - m[at.FORCE_TIME]) + m[at.ORIGIN_LOW]) + now
-    write_cubic(m, at.FORCE_SERIES, at.STATE_INPUTS + at.CUBIC, age, h)
-    write_source(m)
+    write_cubic_series(m, at.FORCE_SERIES, at.STATE_INPUTS + at.CUBIC, age, h)
+    write_source_series(m)
 
 
-def write_cubic(m, series, inputs, age, h):
+def write_cubic_series(m, series, inputs, age, h):
     """Write a cubic's series, ``age`` (s) after it began; a constant keeps its bits."""
     d0, d1, d2, d3 = m[inputs], m[inputs + 1], m[inputs + 2], m[inputs + 3]
     m[series] = d0 + age * (d1 + 0.5 * age * (d2 + age * d3 / 3.0))
@@ -40,7 +40,7 @@ def write_cubic(m, series, inputs, age, h):
     m[series + 3] = h * h * h * d3 / 6.0
 
 
-def write_source(m):
+def write_source_series(m):
     """Write the source's series: the command, or its limit."""
     for i in range(at.CUBIC):
         m[at.SOURCE_SERIES + i] = m[at.COMMAND_SERIES + i] if m[at.CLIPPED] == 0.0 else 0.0

@@ -26,11 +26,11 @@ def set_spacings(m):
         driven = coupled + max(damping / mass, resistance / inductance)
     else:
         driven = free + (damping + factor / resistance) / mass
-    m[at.VOLTAGE_SPACING] = spacing(driven)
-    m[at.CURRENT_SPACING] = spacing(free + damping / mass)
+    m[at.VOLTAGE_SPACING] = longest_spacing(driven)
+    m[at.CURRENT_SPACING] = longest_spacing(free + damping / mass)
 
 
-def spacing(rate):
+def longest_spacing(rate):
     """Return the longest power of two, s, in which a ``rate`` makes no more than one radian."""
     length = LONGEST
     while length * rate > 1.0:

@@ -5,7 +5,7 @@ bring one to zero, it has no root; else the certified steps of :mod:`..numerics.
 through the interval.
 """
 
-from ..numerics.first_root import EPS, NO_NUMBER, next_step
+from ..numerics.first_root import EPS, NO_NUMBER, next_step_or_root
 from . import memory as at
 from .amplifier import write_guard
 
@@ -18,27 +18,31 @@ def find_event(m):
     m[at.EVENT] = NONE
     m[at.EVENT_KIND] = at.NO_EVENT
     if m[at.COMMAND_LIMIT] > 0.0:
-        watch_command(m)
+        watch_command_limit(m)
     if m[at.OTHER_LIMIT] > 0.0:
-        watch_other(m)
+        watch_other_limit(m)
     if m[at.TRAVEL_LIMIT] > 0.0:
-        watch_limit(m, at.POSITION_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], 1.0, 0, at.TRAVEL_EVENT)
-        watch_limit(m, at.POSITION_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], -1.0, 0, at.TRAVEL_EVENT)
+        note_root_at_limit(
+            m, at.POSITION_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], 1.0, 0, at.TRAVEL_EVENT
+        )
+        note_root_at_limit(
+            m, at.POSITION_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], -1.0, 0, at.TRAVEL_EVENT
+        )
 
 
-def watch_command(m):
+def watch_command_limit(m):
     """Look for the event that the command reaches its limit, or comes back to it."""
     limit, side = m[at.COMMAND_LIMIT], m[at.COMMAND_SIDE]
     order = int(m[at.COMMAND_ORDER]) if m[at.INTERVAL] == 0.0 else 0
     if m[at.CLIPPED] != 0.0:
         write_guard(m, at.COMMAND_SERIES, at.CUBIC, m[at.CLIPPED], -limit)
-        note_root(m, order, at.COMMAND_EVENT)
+        note_earlier_root(m, order, at.COMMAND_EVENT)
     else:
-        watch_limit(m, at.COMMAND_SERIES, at.CUBIC, limit, side, order, at.COMMAND_EVENT)
-        watch_limit(m, at.COMMAND_SERIES, at.CUBIC, limit, -side, 0, at.COMMAND_EVENT)
+        note_root_at_limit(m, at.COMMAND_SERIES, at.CUBIC, limit, side, order, at.COMMAND_EVENT)
+        note_root_at_limit(m, at.COMMAND_SERIES, at.CUBIC, limit, -side, 0, at.COMMAND_EVENT)
 
 
-def watch_other(m):
+def watch_other_limit(m):
     """Look for the event that the other quantity reaches its limit, or leaves it."""
     limit, side = m[at.OTHER_LIMIT], m[at.OTHER_SIDE]
     order = int(m[at.OTHER_ORDER]) if m[at.INTERVAL] == 0.0 else 0
@@ -49,26 +53,26 @@ def watch_other(m):
         write_guard(m, own, at.TERMS, -m[at.HELD], 0.0)
         for k in range(at.CUBIC):
             m[at.GUARD + k] += m[at.HELD] * m[at.SOURCE_SERIES + k]
-        note_root(m, order, at.OTHER_EVENT)
+        note_earlier_root(m, order, at.OTHER_EVENT)
     else:
-        watch_limit(m, other, at.TERMS, limit, side, order, at.OTHER_EVENT)
-        watch_limit(m, other, at.TERMS, limit, -side, 0, at.OTHER_EVENT)
+        note_root_at_limit(m, other, at.TERMS, limit, side, order, at.OTHER_EVENT)
+        note_root_at_limit(m, other, at.TERMS, limit, -side, 0, at.OTHER_EVENT)
 
 
-def watch_limit(m, series, terms, limit, side, order, kind):
+def note_root_at_limit(m, series, terms, limit, side, order, kind):
     write_guard(m, series, terms, -side, limit)
-    note_root(m, order, kind)
+    note_earlier_root(m, order, kind)
 
 
-def note_root(m, order, kind):
+def note_earlier_root(m, order, kind):
     """Make the root of GUARD the interval's event where it is earlier."""
-    root = first_root(m, order)
+    root = first_guard_root(m, order)
     if root < m[at.EVENT] or root != root:
         m[at.EVENT] = root
         m[at.EVENT_KIND] = kind
 
 
-def first_root(m, order):
+def first_guard_root(m, order):
     """Return the first root of GUARD, or NONE; terms before ``order`` vanish, but for rounding."""
     first = order
     while first < at.TERMS and (
@@ -83,10 +87,10 @@ def first_root(m, order):
     for k in range(first + 1, at.TERMS):
         lowest += min(m[at.GUARD + k], 0.0)
         size += abs(m[at.GUARD + k])
-    return NONE if lowest > 0.0 else walk(m, first, size)
+    return NONE if lowest > 0.0 else walk_to_guard_root(m, first, size)
 
 
-def walk(m, first, size):
+def walk_to_guard_root(m, first, size):
     """Return the first root of GUARD over its ``first`` power, NONE, or NaN: undecided."""
     bound = LEAST * size
     for k in range(first + 5, at.TERMS):
@@ -94,8 +98,8 @@ def walk(m, first, size):
         bound += abs(m[at.GUARD + k]) * (j * (j - 1) * (j - 2) * (j - 3) * (j - 4))
     part = 0.0
     for _ in range(MOST_STEPS):
-        h0, h1, h2, h3, h4 = derivatives(m, first, part)
-        step, found = next_step(h0, h1, h2, h3, h4, bound, 1.0, 1.0 - part, EPS)
+        h0, h1, h2, h3, h4 = guard_derivatives(m, first, part)
+        step, found = next_step_or_root(h0, h1, h2, h3, h4, bound, 1.0, 1.0 - part, EPS)
         part += step
         if found:
             return part
@@ -104,7 +108,7 @@ def walk(m, first, size):
     return NO_NUMBER
 
 
-def derivatives(m, first, part):
+def guard_derivatives(m, first, part):
     """Return value and four derivatives of GUARD over the power of its ``first`` term."""
     h0, h1, h2, h3, h4 = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(at.DEGREE, first - 1, -1):

@@ -5,24 +5,24 @@ same throughout. Intervals of one length follow one another from its beginning.
 """
 
 from . import memory as at
-from .amplifier import decide_limits
-from .inputs import cubic_begins, keep_inputs, write_inputs
+from .amplifier import decide_active_limits
+from .inputs import does_cubic_restart, store_inputs, write_input_series
 from .limits import find_event
-from .series import is_voltage_driven, write_interval, write_states
+from .series import is_voltage_driven, write_interval_series, write_states_at
 
 
 def begin_state(m):
     for i in range(at.STATES):
         m[at.STATE + i] = m[at.BEGIN + i]
     m[at.INTERVAL] = 0.0
-    decide_limits(m)
+    decide_active_limits(m)
     begin_interval(m)
 
 
 def begin_interval(m):
     set_spacing(m)
-    write_inputs(m, m[at.SPACING])
-    write_interval(m)
+    write_input_series(m, m[at.SPACING])
+    write_interval_series(m)
     find_event(m)
 
 
@@ -36,16 +36,16 @@ def local_time(m, time):
     return local if local > 0.0 else 0.0
 
 
-def part_at(m, time):
+def interval_part_at(m, time):
     """Return which part of the present interval has passed at a ``time``."""
     h = m[at.SPACING]
     return (local_time(m, time) - m[at.INTERVAL] * h) / h
 
 
-def renew_inputs(m):
+def restart_at_new_inputs(m):
     """Begin a state where an input was set; once more there, from the same states."""
-    command = cubic_begins(m, at.COMMAND_SET, at.COMMAND)
-    force = cubic_begins(m, at.FORCE_SET, at.BOX_FORCE)
+    command = does_cubic_restart(m, at.COMMAND_SET, at.COMMAND)
+    force = does_cubic_restart(m, at.FORCE_SET, at.BOX_FORCE)
     m[at.COMMAND_SET] = 0.0
     m[at.FORCE_SET] = 0.0
     if not (command or force):
@@ -53,7 +53,7 @@ def renew_inputs(m):
     time = m[at.TIME]
     moved = local_time(m, time) > 0.0
     if moved:
-        write_states(m, at.BEGIN, part_at(m, time))
+        write_states_at(m, at.BEGIN, interval_part_at(m, time))
         m[at.FOLLOWED] = 1.0 if m[at.HELD] == 0.0 else 0.0
     if moved or command:
         m[at.COMMAND_LOWEST] = 0.0
@@ -65,13 +65,13 @@ def renew_inputs(m):
         m[at.FORCE_TIME] = time
     m[at.ORIGIN] = time
     m[at.ORIGIN_LOW] = 0.0
-    keep_inputs(m)
+    store_inputs(m)
     begin_state(m)
 
 
-def end_state(m):
+def end_state_at_event(m):
     """Carry out the present interval's event, and begin the state after it."""
-    write_states(m, at.BEGIN, m[at.EVENT])
+    write_states_at(m, at.BEGIN, m[at.EVENT])
     other = m[at.EVENT_KIND] == at.OTHER_EVENT
     lags, held = m[at.COIL_INDUCTANCE] > 0.0, m[at.HELD] != 0.0
     commanded = m[at.CURRENT_CONTROL] != 0.0
@@ -106,13 +106,13 @@ def run_to(m, time):
         event = begun + m[at.EVENT] * m[at.SPACING]
         if m[at.EVENT_KIND] != at.NO_EVENT and event <= local:
             if m[at.EVENT_KIND] == at.TRAVEL_EVENT:
-                write_states(m, at.BEGIN, m[at.EVENT])
+                write_states_at(m, at.BEGIN, m[at.EVENT])
                 m[at.BOX_POSITION] = m[at.BEGIN + at.POSITION]
                 m[at.REPORT] = m[at.ORIGIN] + event
                 return at.TRAVEL
-            end_state(m)
+            end_state_at_event(m)
         elif begun + m[at.SPACING] <= local:
-            write_states(m, at.STATE, 1.0)
+            write_states_at(m, at.STATE, 1.0)
             m[at.INTERVAL] += 1.0
             begin_interval(m)
         else:

@@ -1,22 +1,22 @@
 """What an importer sees at a communication point, with the inputs as they are now."""
 
 from . import memory as at
-from .motion import part_at
-from .series import slopes, value, write_states
+from .motion import interval_part_at
+from .series import series_slopes, series_value, write_states_at
 
 
 def write_outputs(m):
-    part, h = part_at(m, m[at.TIME]), m[at.SPACING]
-    write_states(m, at.GUARD, part)
+    part, h = interval_part_at(m, m[at.TIME]), m[at.SPACING]
+    write_states_at(m, at.GUARD, part)
     position, velocity = m[at.GUARD + at.POSITION], m[at.GUARD + at.VELOCITY]
     current = m[at.GUARD + at.COIL_CURRENT]
-    voltage = value(m, at.VOLTAGE_SERIES, at.DEGREE, part)
+    voltage = series_value(m, at.VOLTAGE_SERIES, at.DEGREE, part)
     factor, mass, stiffness = m[at.FORCE_FACTOR], m[at.TABLE_MASS], m[at.SUSPENSION_STIFFNESS]
-    force = factor * current + value(m, at.FORCE_SERIES, at.CUBIC - 1, part)
+    force = factor * current + series_value(m, at.FORCE_SERIES, at.CUBIC - 1, part)
     force -= m[at.SUSPENSION_DAMPING] * velocity + stiffness * position
     acceleration = force / mass
-    rise = factor * slopes(m, at.CURRENT_SERIES, at.DEGREE, part)[0] / h
-    rise += slopes(m, at.FORCE_SERIES, at.CUBIC - 1, part)[0] / h
+    rise = factor * series_slopes(m, at.CURRENT_SERIES, at.DEGREE, part)[0] / h
+    rise += series_slopes(m, at.FORCE_SERIES, at.CUBIC - 1, part)[0] / h
     rise -= m[at.SUSPENSION_DAMPING] * acceleration + stiffness * velocity
     m[at.BOX_POSITION] = position
     m[at.BOX_VELOCITY] = velocity
@@ -39,6 +39,7 @@ def write_outputs(m):
 
 
 def check_finite(m):
+    """Return OK, or NOT_FINITE if an output is no finite number."""
     total = m[at.EVENT]
     for i in range(at.BOX_POSITION, at.TIME):
         total += m[i]

@@ -19,34 +19,34 @@ def is_voltage_driven(m):
     return m[at.HELD] == 0.0
 
 
-def write_interval(m):
+def write_interval_series(m):
     driven = is_voltage_driven(m)
     driver = at.VOLTAGE_SERIES if driven else at.CURRENT_SERIES
     if m[at.HELD] != 0.0:
-        write_constant(m, driver, m[at.HELD] * m[at.OTHER_LIMIT])
+        write_constant_series(m, driver, m[at.HELD] * m[at.OTHER_LIMIT])
     else:
-        copy_source(m, driver)
+        write_source_into(m, driver)
     if driven:
-        write_driven_motion(m, m[at.SPACING])
+        write_motion_of_voltage(m, m[at.SPACING])
     else:
-        write_prescribed_motion(m, m[at.SPACING])
-    write_energies(m, m[at.SPACING], driven)
+        write_motion_of_current(m, m[at.SPACING])
+    write_energy_series(m, m[at.SPACING], driven)
 
 
-def write_constant(m, series, number):
+def write_constant_series(m, series, number):
     for k in range(at.TERMS):
         m[series + k] = 0.0
     m[series] = number
 
 
-def copy_source(m, series):
+def write_source_into(m, series):
     for k in range(at.TERMS):
         m[series + k] = 0.0
     for k in range(at.CUBIC):
         m[series + k] = m[at.SOURCE_SERIES + k]
 
 
-def next_motion_terms(m, k, part):
+def write_next_motion_terms(m, k, part):
     """Write the terms k + 1 of position and velocity; ``part`` is the interval over k + 1."""
     position, velocity = m[at.POSITION_SERIES + k], m[at.VELOCITY_SERIES + k]
     force = m[at.FORCE_FACTOR] * m[at.CURRENT_SERIES + k] + m[at.FORCE_SERIES + k]
@@ -55,13 +55,13 @@ def next_motion_terms(m, k, part):
     m[at.VELOCITY_SERIES + k + 1] = part * (force / m[at.TABLE_MASS])
 
 
-def opposing_voltage(m, k):
+def opposing_voltage_term(m, k):
     """Return term k of the voltage over the resistance and that induced by the motion."""
     drop = m[at.COIL_RESISTANCE] * m[at.CURRENT_SERIES + k]
     return drop + m[at.FORCE_FACTOR] * m[at.VELOCITY_SERIES + k]
 
 
-def write_driven_motion(m, h):
+def write_motion_of_voltage(m, h):
     """Write the series of motion and current for the voltage in VOLTAGE_SERIES."""
     inductance = m[at.COIL_INDUCTANCE]
     m[at.POSITION_SERIES] = m[at.STATE + at.POSITION]
@@ -70,11 +70,11 @@ def write_driven_motion(m, h):
     for k in range(at.DEGREE):
         part = h / (k + 1)
         if inductance > 0.0:
-            rest = m[at.VOLTAGE_SERIES + k] - opposing_voltage(m, k)
+            rest = m[at.VOLTAGE_SERIES + k] - opposing_voltage_term(m, k)
             m[at.CURRENT_SERIES + k + 1] = part * (rest / inductance)
         else:
             m[at.CURRENT_SERIES + k] = current_term_without_inductance(m, k)
-        next_motion_terms(m, k, part)
+        write_next_motion_terms(m, k, part)
     if inductance == 0.0:
         m[at.CURRENT_SERIES + at.DEGREE] = current_term_without_inductance(m, at.DEGREE)
 
@@ -84,38 +84,38 @@ def current_term_without_inductance(m, k):
     return rest / m[at.COIL_RESISTANCE]
 
 
-def write_prescribed_motion(m, h):
+def write_motion_of_current(m, h):
     """Write the series of motion and voltage for the current in CURRENT_SERIES."""
     m[at.POSITION_SERIES] = m[at.STATE + at.POSITION]
     m[at.VELOCITY_SERIES] = m[at.STATE + at.VELOCITY]
     for k in range(at.DEGREE):
-        next_motion_terms(m, k, h / (k + 1))
+        write_next_motion_terms(m, k, h / (k + 1))
         rise = m[at.COIL_INDUCTANCE] * m[at.CURRENT_SERIES + k + 1] * ((k + 1) / h)
-        m[at.VOLTAGE_SERIES + k] = opposing_voltage(m, k) + rise
-    m[at.VOLTAGE_SERIES + at.DEGREE] = opposing_voltage(m, at.DEGREE)
+        m[at.VOLTAGE_SERIES + k] = opposing_voltage_term(m, k) + rise
+    m[at.VOLTAGE_SERIES + at.DEGREE] = opposing_voltage_term(m, at.DEGREE)
 
 
-def write_energies(m, h, driven):
+def write_energy_series(m, h, driven):
     """Write the series of the amplifier's work, heat, loss, and work of the force on the box."""
     cubic, other = at.CURRENT_SERIES, at.VOLTAGE_SERIES
     if driven:
         cubic, other = at.VOLTAGE_SERIES, at.CURRENT_SERIES
     current, speed = at.CURRENT_SERIES, at.VELOCITY_SERIES
-    write_work(m, at.WORK_SERIES, m[at.STATE + at.INPUT_WORK], cubic, other, h)
+    write_work_series(m, at.WORK_SERIES, m[at.STATE + at.INPUT_WORK], cubic, other, h)
     resistance = h * m[at.COIL_RESISTANCE]
     if driven:
-        write_square(m, at.HEAT_SERIES, m[at.STATE + at.HEAT], current, resistance)
+        write_square_series(m, at.HEAT_SERIES, m[at.STATE + at.HEAT], current, resistance)
     else:
-        write_work(m, at.HEAT_SERIES, m[at.STATE + at.HEAT], current, current, resistance)
+        write_work_series(m, at.HEAT_SERIES, m[at.STATE + at.HEAT], current, current, resistance)
     damping = h * m[at.SUSPENSION_DAMPING]
-    write_square(m, at.LOSS_SERIES, m[at.STATE + at.LOSS], speed, damping)
+    write_square_series(m, at.LOSS_SERIES, m[at.STATE + at.LOSS], speed, damping)
     begun = m[at.STATE + at.FORCE_WORK]
-    write_work(m, at.FORCE_WORK_SERIES, begun, at.FORCE_SERIES, speed, h)
+    write_work_series(m, at.FORCE_WORK_SERIES, begun, at.FORCE_SERIES, speed, h)
 
 
-def write_work(m, to, begun, cubic, other, factor):
-    """Write the series of ``begun`` plus ``factor`` times an integral of cubic times series."""
-    m[to] = begun
+def write_work_series(m, to, start_value, cubic, other, factor):
+    """Write the series of a start value plus ``factor`` times an integral of cubic times other."""
+    m[to] = start_value
     for n in range(at.WORK_DEGREE):
         first = n - at.DEGREE if n > at.DEGREE else 0
         last = n if n < at.CUBIC else at.CUBIC - 1
@@ -125,9 +125,9 @@ def write_work(m, to, begun, cubic, other, factor):
         m[to + n + 1] = factor * total / (n + 1)
 
 
-def write_square(m, to, begun, series, factor):
-    """Write the series of ``begun`` plus ``factor`` times the integral of a series' square."""
-    m[to] = begun
+def write_square_series(m, to, start_value, series, factor):
+    """Write the series of a start value plus ``factor`` times the integral of a square."""
+    m[to] = start_value
     for n in range(at.WORK_DEGREE):
         j = n - at.DEGREE if n > at.DEGREE else 0
         total = 0.0
@@ -140,14 +140,14 @@ def write_square(m, to, begun, series, factor):
         m[to + n + 1] = factor * total / (n + 1)
 
 
-def value(m, series, degree, part):
+def series_value(m, series, degree, part):
     total = m[series + degree]
     for k in range(degree - 1, -1, -1):
         total = total * part + m[series + k]
     return total
 
 
-def slopes(m, series, degree, part):
+def series_slopes(m, series, degree, part):
     """Return a series' first and second derivative by the part of its interval."""
     first, second = 0.0, 0.0
     for k in range(degree, 0, -1):
@@ -156,7 +156,7 @@ def slopes(m, series, degree, part):
     return first, second
 
 
-def write_states(m, to, part):
+def write_states_at(m, to, part):
     position, velocity, current = 0.0, 0.0, 0.0
     for k in range(at.DEGREE, -1, -1):
         position = position * part + m[at.POSITION_SERIES + k]

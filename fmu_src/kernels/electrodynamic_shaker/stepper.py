@@ -4,9 +4,9 @@ An instance is one flat memory.
 """
 
 from . import memory as at
-from .inputs import keep_inputs
+from .inputs import store_inputs
 from .intervals import SHORTEST, set_spacings
-from .motion import begin_state, local_time, renew_inputs, run_to, set_spacing
+from .motion import begin_state, local_time, restart_at_new_inputs, run_to, set_spacing
 from .outputs import check_finite, write_outputs
 
 WORK_MOST = 4e6  # series of a step: some seconds, compiled; EVALUATION_LIMIT may allow less
@@ -23,7 +23,7 @@ def initialize(m, time):
     m[at.ORIGIN] = time
     m[at.COMMAND_TIME] = time
     m[at.FORCE_TIME] = time
-    code = derive(m)
+    code = derive_constants(m)
     if code != at.OK:
         return code
     if m[at.TRAVEL_LIMIT] > 0.0 and abs(m[at.POSITION_START]) > m[at.TRAVEL_LIMIT]:
@@ -36,13 +36,13 @@ def initialize(m, time):
     # without a voltage limit a commanded current jumps from zero to the first command
     jumps = m[at.CURRENT_CONTROL] != 0.0 and m[at.VOLTAGE_LIMIT] == 0.0
     m[at.BEGIN + at.COIL_CURRENT] = 0.0 if jumps else m[at.CURRENT_START]
-    keep_inputs(m)
+    store_inputs(m)
     begin_state(m)
     write_outputs(m)
     return check_finite(m)
 
 
-def derive(m):
+def derive_constants(m):
     """Compute what follows from the parameters; INDUCTANCE: a time constant is too short."""
     set_spacings(m)
     m[at.REPORT] = SHORTEST
@@ -57,14 +57,14 @@ def derive(m):
 
 def restore(m, time):
     """Recompute what the parameters decide in a saved memory; ``time`` is not used."""
-    code = derive(m)
+    code = derive_constants(m)
     set_spacing(m)
     return code
 
 
 def advance(m, time):
     """Advance to ``time`` (s); after another code than OK the memory is to be thrown away."""
-    renew_inputs(m)
+    restart_at_new_inputs(m)
     m[at.TARGET] = time
     m[at.WORK] = 0.0
     m[at.WORK_LIMIT] = min(WORK_MOST, m[at.EVALUATION_LIMIT])
@@ -85,6 +85,6 @@ def advance(m, time):
 
 def refresh(m, time):
     """Write the outputs for the inputs as they are now; ``time`` is not used."""
-    renew_inputs(m)
+    restart_at_new_inputs(m)
     write_outputs(m)
     return check_finite(m)

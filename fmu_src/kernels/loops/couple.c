@@ -84,9 +84,9 @@ EXPORT const unsigned sizes_of_couple[] = {sizeof(Pair), MOTION, POSITION, ANGLE
 
 /* -- calls of the FMUs: true if the run continues -- */
 
-static bool put(Side *s, const double *values) { return set_reals(&s->fmi, s->inputs, s->input_count, values); }
+static bool set_inputs(Side *s, const double *values) { return set_reals(&s->fmi, s->inputs, s->input_count, values); }
 
-static bool get(Side *s, double *values) { return get_reals(&s->fmi, s->outputs, s->output_count, values, s->output_count); }
+static bool read_outputs(Side *s, double *values) { return get_reals(&s->fmi, s->outputs, s->output_count, values, s->output_count); }
 
 static int step2(Side *s, Answer *a) {
     int ended = 0, status = ((Step2)s->fmi.step)(s->fmi.instance, a->time, a->h, 0);
@@ -98,7 +98,7 @@ static int step2(Side *s, Answer *a) {
     return a->terminate ? 0 : status;
 }
 
-static bool advance(Side *s, double time, double h) {
+static bool advance_side(Side *s, double time, double h) {
     Answer *a = s->answer;
     if (a->terminate) return answered(&s->fmi, "the step", NOT_WHOLE);
     a->time = time, a->h = h, a->last = time;
@@ -107,12 +107,12 @@ static bool advance(Side *s, double time, double h) {
     return answered(&s->fmi, "the step", !status && (a->terminate || a->early) && !whole ? NOT_WHOLE : status);
 }
 
-static bool save(Side *s) {
+static bool save_side(Side *s) {
     if (s->keeps_anew && *s->kept && !answered(&s->fmi, "freeing the state", s->release(s->fmi.instance, s->kept))) return false;
     return answered(&s->fmi, "saving the state", s->save(s->fmi.instance, s->kept));
 }
 
-static bool restore(Side *s) { return answered(&s->fmi, "restoring the state", s->restore(s->fmi.instance, *s->kept)); }
+static bool restore_side(Side *s) { return answered(&s->fmi, "restoring the state", s->restore(s->fmi.instance, *s->kept)); }
 
 static bool count_impacts(Side *s, double *impacts) {
     int32_t count = 0;
@@ -123,13 +123,13 @@ static bool count_impacts(Side *s, double *impacts) {
 
 /* -- polynomials -- */
 
-static double size_of(double value) { return __builtin_fabs(value); }
+static double magnitude(double value) { return __builtin_fabs(value); }
 
 static bool is_known(double value) { return value == value; }
 
 static void set_cubic(Cubic f, double f0, double f1, double f2, double f3) { f[0] = f0, f[1] = f1, f[2] = f2, f[3] = f3; }
 
-static void matched_cubic(Cubic f, double first, double last, double mean, double moment, double h) {
+static void fit_cubic(Cubic f, double first, double last, double mean, double moment, double h) {
     double a1 = last - first, a2 = mean - first, a3 = moment - 0.5 * first;
     double b = 3.0 * a1 + 36.0 * a2 - 60.0 * a3;
     double c = -12.0 * a1 - 96.0 * a2 + 180.0 * a3;
@@ -139,19 +139,19 @@ static void matched_cubic(Cubic f, double first, double last, double mean, doubl
 
 /* Cubics of rows of end values, mean, first moment and step. */
 EXPORT void matched_cubics(const double (*given)[5], int count, Cubic *found) {
-    for (int i = 0; i < count; i++) matched_cubic(found[i], given[i][0], given[i][1], given[i][2], given[i][3], given[i][4]);
+    for (int i = 0; i < count; i++) fit_cubic(found[i], given[i][0], given[i][1], given[i][2], given[i][3], given[i][4]);
 }
 
-static void end_derivatives(Cubic end, const double *f, double h) {
+static void cubic_after(Cubic end, const double *f, double h) {
     set_cubic(end, f[0] + h * (f[1] + 0.5 * h * (f[2] + h * f[3] / 3.0)), f[1] + h * (f[2] + 0.5 * h * f[3]), f[2] + h * f[3], f[3]);
 }
 
 /* Cubics of rows of another one and the time after which they continue it. */
 EXPORT void continued_cubics(const double (*given)[5], int count, Cubic *found) {
-    for (int i = 0; i < count; i++) end_derivatives(found[i], given[i], given[i][4]);
+    for (int i = 0; i < count; i++) cubic_after(found[i], given[i], given[i][4]);
 }
 
-static double work(const Cubic force, double velocity, const Cubic a, double h) {
+static double work_of_force(const Cubic force, double velocity, const Cubic a, double h) {
     double f[4] = {force[0], force[1] * h, force[2] * h * h / 2.0, force[3] * h * h * h / 6.0};
     double v[5] = {velocity, a[0] * h, a[1] * h * h / 2.0, a[2] * h * h * h / 6.0, a[3] * h * h * h * h / 24.0};
     double total = 0.0;
@@ -161,33 +161,33 @@ static double work(const Cubic force, double velocity, const Cubic a, double h) 
 
 /* -- what each side assumes of the other -- */
 
-static bool is_held(const Pair *p) { return p->force.count < 4; }
+static bool is_force_held(const Pair *p) { return p->force.count < 4; }
 
 /* The first moment of the force about the middle of a step, which a held force lacks. */
-static double lever(const double *next, double h) { return next[MOMENT] - 0.5 * h * next[IMPULSE]; }
+static double moment_about_middle(const double *next, double h) { return next[MOMENT] - 0.5 * h * next[IMPULSE]; }
 
-static void exact_force(Cubic f, const double *now, const double *next, double h) {
-    matched_cubic(f, now[FORCE], next[FORCE], next[IMPULSE] / h, next[MOMENT] / (h * h), h);
+static void fit_force(Cubic f, const double *now, const double *next, double h) {
+    fit_cubic(f, now[FORCE], next[FORCE], next[IMPULSE] / h, next[MOMENT] / (h * h), h);
 }
 
-static void force_over(Pair *p, Cubic f, const double *now, const double *next, double h) {
-    if (!is_held(p)) {
-        exact_force(f, now, next, h);
+static void force_for_drive(Pair *p, Cubic f, const double *now, const double *next, double h) {
+    if (!is_force_held(p)) {
+        fit_force(f, now, next, h);
         return;
     }
-    p->held = next[IMPULSE] / h + (p->owed[1] / h + 1.5 * (p->owed[0] - lever(next, h) / h)) / h;
+    p->held = next[IMPULSE] / h + (p->owed[1] / h + 1.5 * (p->owed[0] - moment_about_middle(next, h) / h)) / h;
     set_cubic(f, p->held, 0.0, 0.0, 0.0);
 }
 
 /* What the drive is owed after a step, of the force that it was given. */
-static void settle(Pair *p, const double *next, double h) {
+static void note_owed_momentum(Pair *p, const double *next, double h) {
     double lacks = next[IMPULSE] - p->held * h;
-    p->owed[1] += h * (p->owed[0] + 0.5 * lacks) - lever(next, h);
+    p->owed[1] += h * (p->owed[0] + 0.5 * lacks) - moment_about_middle(next, h);
     p->owed[0] += lacks;
 }
 
 /* Derivatives at time 0, from an order on, of the polynomial through points. */
-static void derivatives(const double *times, double *values, int count, int order, Cubic found) {
+static void derivatives_through_points(const double *times, double *values, int count, int order, Cubic found) {
     double polynomial[PAST + 5] = {0.0}, factorial = order > 1 ? 2.0 : 1.0;  /* coefficients, by Horner's scheme in Newton's form */
     for (int level = 1; level < count; level++)
         for (int i = count - 1; i >= level; i--) values[i] = (values[i] - values[i - 1]) / (times[i] - times[i - level]);
@@ -201,118 +201,118 @@ static void derivatives(const double *times, double *values, int count, int orde
 static bool knows_ends_and_mean(const double *row) { return is_known(row[ACCELERATION]) && is_known(row[VELOCITY]); }
 
 /* Which derivative the points are: 0 of the rest, -1 and -2 for its integrals. */
-static int order_of(const double *row) { return is_known(row[ACCELERATION]) ? 0 : is_known(row[VELOCITY]) ? 1 : 2; }
+static int point_order(const double *row) { return is_known(row[ACCELERATION]) ? 0 : is_known(row[VELOCITY]) ? 1 : 2; }
 
 /* What the points are of at a row: the acceleration less w times the force, or the velocity or position. */
-static double point_of(const double *row, double w) {
-    int order = order_of(row);
+static double point_value(const double *row, double w) {
+    int order = point_order(row);
     return order ? row[order == 1 ? VELOCITY : POSITION] : row[ACCELERATION] - w * row[FORCE];
 }
 
 /* What a held force did over a step to a point that is `age` from the step's end: nothing after it. */
-static double moved_by(double held, int order, double h, double age) { return order == 0 ? 0.0 : order == 1 ? held * h : held * h * (0.5 * h + age); }
+static double motion_by_held_force(double held, int order, double h, double age) { return order == 0 ? 0.0 : order == 1 ? held * h : held * h * (0.5 * h + age); }
 
 /* The rest over a step through the points of velocity, position or acceleration only. */
-static void rest_of_points(const Pair *p, Cubic f, const double *now, const double *next, double h) {
-    int order = order_of(now), most = 2 + order, known = p->point_count < most ? p->point_count : most, first = p->point_count - known;
+static void rest_through_points(const Pair *p, Cubic f, const double *now, const double *next, double h) {
+    int order = point_order(now), most = 2 + order, known = p->point_count < most ? p->point_count : most, first = p->point_count - known;
     double ages[PAST + 1], values[PAST + 1];
     for (int i = 0; i < known; i++) {
         ages[i] = p->points[2 * (first + i)] - now[TIME];
         values[i] = p->points[2 * (first + i) + 1];
     }
     ages[known] = h;
-    values[known] = point_of(next, p->inverse_mass[1]) - p->inverse_mass[1] * moved_by(p->held, order, h, 0.0);
-    derivatives(ages, values, known + 1, order, f);
+    values[known] = point_value(next, p->inverse_mass[1]) - p->inverse_mass[1] * motion_by_held_force(p->held, order, h, 0.0);
+    derivatives_through_points(ages, values, known + 1, order, f);
 }
 
 /* Where a row has the forces on the halves, in SI, */
-static double *pushes_of(double *row) { return row + ACCELERATION + 1; }
+static double *forces_on_halves(double *row) { return row + ACCELERATION + 1; }
 
 /* and their cubics over the step that ends there. */
-static double *cubics_of(const Pair *p, double *row) { return pushes_of(row) + p->drive.output_count - p->motion.count; }
+static double *force_cubics(const Pair *p, double *row) { return forces_on_halves(row) + p->drive.output_count - p->motion.count; }
 
 /* The forces over the coming step: extrapolated, */
-static void push_on(const Pair *p, double *now, double *next) {
+static void extrapolate_forces(const Pair *p, double *now, double *next) {
     for (int k = 0; k < p->pushes.count; k++) {
-        double *cubic = cubics_of(p, next) + 4 * k;
+        double *cubic = force_cubics(p, next) + 4 * k;
         set_cubic(cubic, 0.0, 0.0, 0.0, 0.0);
-        if (now[H] != 0.0) end_derivatives(cubic, cubics_of(p, now) + 4 * k, now[H]);
-        cubic[0] = pushes_of(now)[k];
+        if (now[H] != 0.0) cubic_after(cubic, force_cubics(p, now) + 4 * k, now[H]);
+        cubic[0] = forces_on_halves(now)[k];
     }
 }
 
 /* and then the polynomials through their last points and the one at its end. */
-static void pushes_over(const Pair *p, const double *now, double *next, double h) {
+static void fit_forces(const Pair *p, const double *now, double *next, double h) {
     int known = (int)p->push_count;
     for (int k = 0; k < p->pushes.count; k++) {
         double ages[PAST], values[PAST];
         for (int i = 0; i < known; i++) ages[i] = p->push_points[i][0] - now[TIME], values[i] = p->push_points[i][1 + k];
-        ages[known] = h, values[known] = pushes_of(next)[k];
-        derivatives(ages, values, known + 1, 0, cubics_of(p, next) + 4 * k);
+        ages[known] = h, values[known] = forces_on_halves(next)[k];
+        derivatives_through_points(ages, values, known + 1, 0, force_cubics(p, next) + 4 * k);
     }
 }
 
-static void remember_pushes(Pair *p, double *row) {
+static void keep_force_points(Pair *p, double *row) {
     int count = (int)p->push_count;
     if (!p->pushes.count) return;
     for (; count == PAST - 1; count--)
         for (int i = 0; i + 1 < count; i++) for (int k = 0; k <= PUSHES; k++) p->push_points[i][k] = p->push_points[i + 1][k];
     p->push_points[count][0] = row[TIME];
-    for (int k = 0; k < p->pushes.count; k++) p->push_points[count][1 + k] = pushes_of(row)[k];
+    for (int k = 0; k < p->pushes.count; k++) p->push_points[count][1 + k] = forces_on_halves(row)[k];
     p->push_count = count + 1;
 }
 
 /* Keep the last points, as though w times the forces held since then had not acted. */
-static void remember(Pair *p, const double *row) {
+static void keep_motion_point(Pair *p, const double *row) {
     if (knows_ends_and_mean(row) || !p->motion.count) return;
     for (int i = 0; i < p->point_count && row[H] != 0.0; i++)
-        p->points[2 * i + 1] += p->inverse_mass[1] * moved_by(p->held, order_of(row), row[H], p->points[2 * i] - row[TIME]);
+        p->points[2 * i + 1] += p->inverse_mass[1] * motion_by_held_force(p->held, point_order(row), row[H], p->points[2 * i] - row[TIME]);
     if (p->point_count == PAST) {
         for (int i = 0; i < 2 * PAST - 2; i++) p->points[i] = p->points[i + 2];
         p->point_count--;
     }
     double *point = p->points + 2 * p->point_count++;
-    point[0] = row[TIME], point[1] = point_of(row, p->inverse_mass[1]);
+    point[0] = row[TIME], point[1] = point_value(row, p->inverse_mass[1]);
 }
 
 /* The rest over a step from its ends, its mean, and its first moment. */
-static void rest_of_ends(const Pair *p, Cubic f, const double *now, const double *next, double h) {
+static void rest_from_ends(const Pair *p, Cubic f, const double *now, const double *next, double h) {
     double w0 = p->inverse_mass[0], w1 = p->inverse_mass[1];
     double first = now[ACCELERATION] - w0 * now[FORCE], last = next[ACCELERATION] - w1 * next[FORCE];
     double mean = (next[VELOCITY] - now[VELOCITY]) / h - 0.5 * (w0 + w1) * p->held;
     double moment = 0.5 * mean + (last - first) / 12.0;
     if (is_known(now[POSITION])) moment = mean - ((next[POSITION] - now[POSITION]) / h - now[VELOCITY]) / h + (w0 + 0.5 * w1) / 3.0 * p->held;
-    matched_cubic(f, first, last, mean, moment, h);
+    fit_cubic(f, first, last, mean, moment, h);
 }
 
-static void acceleration_over(const Pair *p, Cubic f, const double *now, const double *next, double h) {
+static void fit_box_acceleration(const Pair *p, Cubic f, const double *now, const double *next, double h) {
     double w = p->inverse_mass[0], rise = (p->inverse_mass[1] - w) / h;
     Cubic force;
     set_cubic(f, 0.0, 0.0, 0.0, 0.0);
     if (!p->motion.count) return;
-    if (knows_ends_and_mean(now)) rest_of_ends(p, f, now, next, h);
-    else rest_of_points(p, f, now, next, h);
+    if (knows_ends_and_mean(now)) rest_from_ends(p, f, now, next, h);
+    else rest_through_points(p, f, now, next, h);
     if (w == 0.0 && rise == 0.0) return;
-    exact_force(force, now, next, h);
+    fit_force(force, now, next, h);
     for (int i = 0; i < 4; i++) f[i] += w * force[i] + (i ? i * rise * force[i - 1] : 0.0);
 }
 
 /* Extrapolate the box acceleration over the coming step. */
-static void run_on(Cubic f, const double *now) {
+static void extrapolate_box_acceleration(Cubic f, const double *now) {
     set_cubic(f, 0.0, 0.0, 0.0, 0.0);
-    if (now[H] != 0.0) end_derivatives(f, now + THEN, now[H]);
+    if (now[H] != 0.0) cubic_after(f, now + THEN, now[H]);
     if (is_known(now[ACCELERATION])) f[0] = now[ACCELERATION];
 }
 
 /* -- a step -- */
 
 /* A force, and the drive's other inputs. */
-static bool put_force(Pair *p, const double *inputs, const Cubic force) {
+static bool set_force_and_inputs(Pair *p, const double *inputs, const Cubic force) {
     double *values = p->scratch;
     int n = p->force.count;
     for (int i = 0; i < n; i++) values[i] = force[p->force.places[i]] / p->force.scales[i];
     for (size_t i = n; i < p->drive.input_count; i++) values[i] = inputs[i - n];
-    return put(&p->drive, values);
+    return set_inputs(&p->drive, values);
 }
 
 /* Reads the drive's outputs under the force at a row's end, a time h after its inputs were set. */
@@ -322,21 +322,21 @@ static bool read_drive(Pair *p, double *row, const double *inputs, double h) {
     if (p->cubic >= 0 && h != 0.0) {
         size_t own = p->drive.input_count - p->force.count;
         for (size_t i = 0; i < own; i++) later[i] = inputs[i];
-        for (size_t i = p->cubic; i < own; i += 4) end_derivatives(later + i, inputs + i, h);
+        for (size_t i = p->cubic; i < own; i += 4) cubic_after(later + i, inputs + i, h);
         inputs = later;
     }
-    if (!put_force(p, inputs, force) || !get(&p->drive, read)) return false;
+    if (!set_force_and_inputs(p, inputs, force) || !read_outputs(&p->drive, read)) return false;
     for (int i = 0; i < known; i++) box[i] = read[i];
     for (int i = 0; i < 3; i++) row[POSITION + i] = __builtin_nan("");
     for (int i = 0; i < known; i++) row[POSITION + p->motion.places[i]] = p->motion.scales[i] * box[i];
-    for (int k = 0; k < p->pushes.count; k++) pushes_of(row)[k] *= p->pushes.scales[k];
+    for (int k = 0; k < p->pushes.count; k++) forces_on_halves(row)[k] *= p->pushes.scales[k];
     return true;
 }
 
 /* Reads the drive, and w, its acceleration with 1 N more less that without. */
 static bool read_drive_and_mass(Pair *p, double *row, const double *inputs, double h, double *w) {
     double force = row[FORCE], more = 0.0;
-    bool tries = is_held(p) && p->motion.count && p->motion.places[p->motion.count - 1] == ACCELERATION - POSITION;
+    bool tries = is_force_held(p) && p->motion.count && p->motion.places[p->motion.count - 1] == ACCELERATION - POSITION;
     if (tries) {
         row[FORCE] = force + 1.0;
         if (!read_drive(p, row, inputs, h)) return false;
@@ -347,104 +347,104 @@ static bool read_drive_and_mass(Pair *p, double *row, const double *inputs, doub
     return true;
 }
 
-static size_t inputs_at(const Pair *p) { return ACCELERATION + 1 + p->drive.output_count - p->motion.count + 4 * p->pushes.count; }
+static size_t first_input_column(const Pair *p) { return ACCELERATION + 1 + p->drive.output_count - p->motion.count + 4 * p->pushes.count; }
 
-static bool oscillate(Pair *p, const double *now, double *next, const Cubic acceleration, double h) {
+static bool advance_oscillator(Pair *p, const double *now, double *next, const Cubic acceleration, double h) {
     double values[4 * (1 + PUSHES)];
     for (int i = 0; i < 4; i++) values[i] = acceleration[i];
-    for (int i = 0; i < 4 * p->pushes.count; i++) values[4 + i] = cubics_of(p, next)[i];
-    return put(&p->oscillator, values) && advance(&p->oscillator, now[TIME], h) && get(&p->oscillator, next + MOTION);
+    for (int i = 0; i < 4 * p->pushes.count; i++) values[4 + i] = force_cubics(p, next)[i];
+    return set_inputs(&p->oscillator, values) && advance_side(&p->oscillator, now[TIME], h) && read_outputs(&p->oscillator, next + MOTION);
 }
 
-static bool restore_both(Pair *p) { return restore(&p->oscillator) && restore(&p->drive); }
+static bool restore_both(Pair *p) { return restore_side(&p->oscillator) && restore_side(&p->drive); }
 
 /* Go back behind a step that the drive did not do. */
-static bool discarded(Pair *p) {
+static bool go_back_after_discard(Pair *p) {
     p->drive.fmi.status = 0;
     return restore_both(p);
 }
 
 static double relative_defect(const double *now, const double *next) {
     double taken = next[WORK] - now[WORK], given = next[ENERGY] - now[ENERGY];
-    double exchanged = size_of(taken) + size_of(given);
-    return exchanged != 0.0 ? size_of(taken - next[GIVEN]) / exchanged : 0.0;
+    double exchanged = magnitude(taken) + magnitude(given);
+    return exchanged != 0.0 ? magnitude(taken - next[GIVEN]) / exchanged : 0.0;
 }
 
 /* A step from `now` to `next`; where it is refused for its defect, both sides have gone back. */
-static bool attempt(Pair *p, double *now, double *next, double h, bool may_refuse, double *defect, bool *refused) {
+static bool try_step(Pair *p, double *now, double *next, double h, bool may_refuse, double *defect, bool *refused) {
     int passes = now[H] == 0.0 ? p->first_passes : 1;
-    const double *inputs = now + inputs_at(p);
+    const double *inputs = now + first_input_column(p);
     double *w = p->inverse_mass, given;
     Cubic acceleration, force;
-    if (!save(&p->oscillator) || ((may_refuse || passes > 1) && !save(&p->drive))) return false;
-    run_on(acceleration, now);
-    push_on(p, now, next);
+    if (!save_side(&p->oscillator) || ((may_refuse || passes > 1) && !save_side(&p->drive))) return false;
+    extrapolate_box_acceleration(acceleration, now);
+    extrapolate_forces(p, now, next);
     for (int i = 0; i < passes; i++) {
         if (i && !restore_both(p)) return false;
-        if (!oscillate(p, now, next, acceleration, h)) return false;
-        force_over(p, force, now, next, h);
-        if (!put_force(p, inputs, force)) return false;
-        if (!advance(&p->drive, now[TIME], h)) {
+        if (!advance_oscillator(p, now, next, acceleration, h)) return false;
+        force_for_drive(p, force, now, next, h);
+        if (!set_force_and_inputs(p, inputs, force)) return false;
+        if (!advance_side(&p->drive, now[TIME], h)) {
             *refused = may_refuse && p->halves_discarded && p->drive.fmi.status == DISCARD;
-            return *refused && discarded(p);
+            return *refused && go_back_after_discard(p);
         }
         if (!read_drive_and_mass(p, next, inputs, h, w + 1)) return false;
-        acceleration_over(p, acceleration, now, next, h);
-        pushes_over(p, now, next, h);
+        fit_box_acceleration(p, acceleration, now, next, h);
+        fit_forces(p, now, next, h);
     }
     given = next[FORCE];
     if (w[0] != 0.0 || w[1] != 0.0) {  /* w times the force of the motion that is nearly the last one */
-        if (!restore(&p->oscillator) || !oscillate(p, now, next, acceleration, h)) return false;
+        if (!restore_side(&p->oscillator) || !advance_oscillator(p, now, next, acceleration, h)) return false;
         next[ACCELERATION] += w[1] * (next[FORCE] - given);
-        acceleration_over(p, acceleration, now, next, h);
+        fit_box_acceleration(p, acceleration, now, next, h);
     }
-    if (!restore(&p->oscillator) || !oscillate(p, now, next, acceleration, h) || !read_drive(p, next, inputs, h)) return false;
-    exact_force(force, now, next, h);
-    next[GIVEN] = work(force, now[VELOCITY], acceleration, h);
+    if (!restore_side(&p->oscillator) || !advance_oscillator(p, now, next, acceleration, h) || !read_drive(p, next, inputs, h)) return false;
+    fit_force(force, now, next, h);
+    next[GIVEN] = work_of_force(force, now[VELOCITY], acceleration, h);
     *defect = p->tolerance != 0.0 ? relative_defect(now, next) : 0.0;
     *refused = may_refuse && p->tolerance != 0.0 && *defect > p->tolerance;
     if (*refused) return restore_both(p);
     next[TIME] = now[TIME] + h, next[H] = h, next[LEVEL] = now[LEVEL];
     for (int i = 0; i < 4; i++) next[THEN + i] = acceleration[i];
-    if (is_held(p)) settle(p, next, h);
-    remember(p, next);
-    remember_pushes(p, next);
+    if (is_force_held(p)) note_owed_momentum(p, next, h);
+    keep_motion_point(p, next);
+    keep_force_points(p, next);
     w[0] = w[1];
     return count_impacts(&p->oscillator, next + IMPACTS);
 }
 
 /* An interval in steps, the row after each of them: `*at` is the last that there is. */
-static bool interval(Pair *p, double *now, double **at, size_t width, const double *inputs, double h) {
-    size_t first = inputs_at(p);
+static bool run_interval(Pair *p, double *now, double **at, size_t width, const double *inputs, double h) {
+    size_t first = first_input_column(p);
     int halvings = p->tolerance != 0.0 || p->halves_discarded ? p->halvings : 0, level = p->tolerance != 0.0 ? (int)now[LEVEL] : 0, done = 0;
     double end = now[TIME] + h, defect;
     bool known = p->cubic < 0, refused;
     for (size_t i = first; i < width; i++) known = known && now[i] == inputs[i - first];
     for (size_t i = first; i < width; i++) now[i] = inputs[i - first];
     double before = now[ACCELERATION], pushed[PUSHES] = {0.0};
-    for (int k = 0; k < p->pushes.count; k++) pushed[k] = pushes_of(now)[k];
+    for (int k = 0; k < p->pushes.count; k++) pushed[k] = forces_on_halves(now)[k];
     if (!known && !read_drive(p, now, inputs, 0.0)) return false;
     for (int i = 0; i < p->point_count && is_known(before); i++) p->points[2 * i + 1] += now[ACCELERATION] - before;  /* a jump of the inputs is none of the motion */
-    for (int i = 0; i < (int)p->push_count; i++) for (int k = 0; k < p->pushes.count; k++) p->push_points[i][1 + k] += pushes_of(now)[k] - pushed[k];
+    for (int i = 0; i < (int)p->push_count; i++) for (int k = 0; k < p->pushes.count; k++) p->push_points[i][1 + k] += forces_on_halves(now)[k] - pushed[k];
     if (now[H] == 0.0 && p->point_count == 0) {
         if (!read_drive_and_mass(p, now, inputs, 0.0, p->inverse_mass + 1)) return false;
         p->inverse_mass[0] = p->inverse_mass[1];
-        remember(p, now);
+        keep_motion_point(p, now);
         p->push_count = 0.0;
-        remember_pushes(p, now);
+        keep_force_points(p, now);
     }
     while (done < 1 << halvings) {
         int size = (1 << halvings) >> level;
         double *next = *at + width;
         for (size_t i = first; i < width; i++) next[i] = now[i];
-        if (!attempt(p, now, next, h / (1 << level), level < halvings, &defect, &refused)) return false;
+        if (!try_step(p, now, next, h / (1 << level), level < halvings, &defect, &refused)) return false;
         if (refused) {
             level++;
         } else {
             done += size;
             *at = next;
             for (size_t i = 0; i < width; i++) now[i] = next[i];
-            for (size_t i = first + p->cubic; p->cubic >= 0 && level && i < width; i += 4) end_derivatives(now + i, now + i, h / (1 << level));
+            for (size_t i = first + p->cubic; p->cubic >= 0 && level && i < width; i += 4) cubic_after(now + i, now + i, h / (1 << level));
             if (defect < p->tolerance * p->easy && done % (2 * size) == 0 && level) level--;
         }
         now[LEVEL] = level;
@@ -454,9 +454,9 @@ static bool interval(Pair *p, double *now, double **at, size_t width, const doub
 }
 
 /* What is recorded of the drive at a row's end, under the force and the inputs there. */
-static bool record(Pair *p, const double *row, const double *inputs) {
+static bool record_drive(Pair *p, const double *row, const double *inputs) {
     double force[4] = {row[FORCE]};
-    if (!put_force(p, inputs, force) || !get_reals(&p->drive.fmi, p->recorded, p->recorded_count, p->table, p->recorded_count)) return false;
+    if (!set_force_and_inputs(p, inputs, force) || !get_reals(&p->drive.fmi, p->recorded, p->recorded_count, p->table, p->recorded_count)) return false;
     p->table += p->recorded_count;
     return true;
 }
@@ -466,13 +466,13 @@ static bool record(Pair *p, const double *row, const double *inputs) {
  * failed or an FMU ended the simulation. The inputs of an interval are followed by those at its end,
  * where something is recorded. */
 EXPORT int couple(Pair *p, double *now, double *rows, int *ends, const double *inputs, int count, double h) {
-    size_t own = p->drive.input_count - p->force.count, width = inputs_at(p) + own;
+    size_t own = p->drive.input_count - p->force.count, width = first_input_column(p) + own;
     double *at = rows;
     p->oscillator.fmi.status = p->drive.fmi.status = 0;
     for (int i = 0; i < count; i++, inputs += p->stride) {
         if (p->oscillator.answer->terminate || p->drive.answer->terminate) return i;
-        if (!interval(p, now, &at, width, inputs, h)) return i;
-        if (p->recorded_count && !record(p, now, inputs + own)) return i;
+        if (!run_interval(p, now, &at, width, inputs, h)) return i;
+        if (p->recorded_count && !record_drive(p, now, inputs + own)) return i;
         ends[i] = (int)((size_t)(at - rows) / width);
     }
     return count;
@@ -485,7 +485,7 @@ EXPORT int find_revolutions(const double *values, size_t along, size_t across, c
     for (int i = 0; i < count; i++) {
         const double *row = values + (size_t)ends[i] * along;
         double angle = row[ANGLE * across], turns = angle / TURN, turn = (double)(int64_t)turns, impacts = row[IMPACTS * across];
-        if (size_of(turns - last[0]) < 1.0) continue;
+        if (magnitude(turns - last[0]) < 1.0) continue;
         if (turns > last[0] ? turn > turns : turn < turns) turn += turns > last[0] ? -1.0 : 1.0;
         double time = row[TIME * across] - (angle - turn * TURN) / row[SPEED * across];
         double *now = found[done++];

@@ -20,7 +20,7 @@ EXPORT size_t find_deviations(const double *numbers, const double *impacts, size
     memory[IMPACTS] = (double)count;
     memory[SPAN_END] = end;
     for (size_t i = 0; i < ROW * count; i++) memory[TABLES + i] = impacts[i];
-    kernel_deviate(memory, 0.0);
+    kernel_write_deviation_matrices(memory, 0.0);
     return TABLES + ROW * count;
 }
 

@@ -2,12 +2,12 @@
 #include "fmi.h"
 #include "orbits.h"
 
-EXPORT void find_flows(double *memory) { kernel_flow(memory, 0.0); }
+EXPORT void find_flows(double *memory) { kernel_write_free_flows(memory, 0.0); }
 
-EXPORT void find_steady(double *memory) { kernel_steady(memory, 0.0); }
+EXPORT void find_steady(double *memory) { kernel_write_steady_states(memory, 0.0); }
 
-EXPORT void find_rates(double *memory) { kernel_field(memory, 0.0); }
+EXPORT void find_rates(double *memory) { kernel_write_rates_of_states(memory, 0.0); }
 
-EXPORT void find_motion(double *memory) { kernel_motion(memory, 0.0); }
+EXPORT void find_motion(double *memory) { kernel_write_later_states(memory, 0.0); }
 
-EXPORT void find_segments(double *memory) { kernel_segments(memory, 0.0); }
+EXPORT void find_segments(double *memory) { kernel_write_segment_equations(memory, 0.0); }

@@ -86,7 +86,7 @@ EXPORT void find_accelerations(const double *states, size_t count, const double 
     }
 }
 
-static bool is_any(const double *state) {
+static bool is_any_nonzero(const double *state) {
     return state[X1] != 0.0 || state[X2] != 0.0 || state[V1] != 0.0 || state[V2] != 0.0;
 }
 
@@ -94,10 +94,10 @@ static bool is_any(const double *state) {
 EXPORT void to_rest(const double *state, const double *traits, double *start) {
     for (int i = 0; i < STATES; i++) start[i] = state[i];
     if (traits[WALL] != 0.0) {  /* mass 2 stays where it is */
-        if (traits[GAP_OFFSET] < 0.0 && is_any(state)) start[X1] = gap_between(state, traits[GAP_OFFSET]) == 0.0 ? 0.0 : state[X1] - traits[REST_1];
+        if (traits[GAP_OFFSET] < 0.0 && is_any_nonzero(state)) start[X1] = gap_between(state, traits[GAP_OFFSET]) == 0.0 ? 0.0 : state[X1] - traits[REST_1];
         return;
     }
-    if (traits[GAP_OFFSET] >= 0.0 || !is_any(state)) return;
+    if (traits[GAP_OFFSET] >= 0.0 || !is_any_nonzero(state)) return;
     start[X1] = state[X1] - traits[REST_1];
     start[X2] = gap_between(state, traits[GAP_OFFSET]) == 0.0 ? start[X1] : state[X2] - traits[REST_2];
 }
@@ -109,7 +109,7 @@ static void set_gap(double *state, const double *traits, double gap) {
 }
 
 /* Faces beyond an end, by rounding or of another clearance or stroke, at that end. */
-static void put_inside(double *state, const double *traits) {
+static void move_inside(double *state, const double *traits) {
     double apart = gap_between(state, traits[GAP_OFFSET]), inside = apart < 0.0 ? 0.0 : apart;
     if (traits[STROKE] != 0.0 && inside > traits[STROKE]) inside = traits[STROKE];
     if (inside != apart) set_gap(state, traits, inside);
@@ -120,12 +120,12 @@ EXPORT void carry_state(const double *state, const double *from, const double *t
     double gap = gap_between(state, from[GAP_OFFSET]);
     bool is_alike = from[GAP_OFFSET] == to[GAP_OFFSET] && from[STROKE] == to[STROKE] && from[WALL] == to[WALL];
     for (int j = 0; j < STATES; j++) like[j] = state[j];
-    if (!is_any(state) || (length == 1.0 && speed == 1.0 && is_alike)) return;
+    if (!is_any_nonzero(state) || (length == 1.0 && speed == 1.0 && is_alike)) return;
     for (int j = 0; j < 2; j++) like[X1 + j] = to[REST_1 + j] + length * (state[X1 + j] - from[REST_1 + j]), like[V1 + j] = state[V1 + j] * speed;
     if (to[WALL] != 0.0) like[X1] -= like[X2], like[V1] -= like[V2], like[X2] = like[V2] = 0.0;
     if (gap == 0.0) set_gap(like, to, 0.0);
     else if (to[STROKE] != 0.0 && __builtin_fabs(gap - from[STROKE]) <= TOUCHING * (__builtin_fabs(state[X1]) + __builtin_fabs(state[X2]) + gap)) set_gap(like, to, to[STROKE]);
-    else put_inside(like, to);
+    else move_inside(like, to);
 }
 
 static double power_of_two(int exponent) {
@@ -158,15 +158,15 @@ static void round_state(const double *state, const double *traits, double *end) 
 
 /* -- steps -- */
 
-static bool advance(Fmi *fmi, double time, double target, double *reached) {
+static bool step_to(Fmi *fmi, double time, double target, double *reached) {
     bool event;
     return do_step(fmi, time, target, &event, reached);
 }
 
 /* States at equal parts of a step, the last at its end. */
-static bool sample(Oscillator *o, double time, double target, size_t count, double *states) {
+static bool sample_step(Oscillator *o, double time, double target, size_t count, double *states) {
     double reached;
-    if (!set_integer(&o->fmi, o->sample_count, (int32_t)count) || !advance(&o->fmi, time, target, &reached)) return false;
+    if (!set_integer(&o->fmi, o->sample_count, (int32_t)count) || !step_to(&o->fmi, time, target, &reached)) return false;
     if (!get_reals(&o->fmi, o->series, o->series_count, o->kept, STATES * o->capacity)) return false;
     for (size_t k = 0; k < count; k++) for (int j = 0; j < STATES; j++) states[STATES * k + j] = o->kept[j * o->capacity + k];
     return true;
@@ -177,7 +177,7 @@ EXPORT bool sample_evenly(Oscillator *o, double time, double target, size_t poin
     double width = (target - time) / (double)points;
     for (size_t done = 0; done < points; done += o->capacity) {
         size_t count = points - done < o->capacity ? points - done : o->capacity;
-        if (!sample(o, time + (double)done * width, time + (double)(done + count) * width, count, states + STATES * done)) return false;
+        if (!sample_step(o, time + (double)done * width, time + (double)(done + count) * width, count, states + STATES * done)) return false;
     }
     return true;
 }
@@ -189,7 +189,7 @@ EXPORT bool sample_periods(Oscillator *o, double period, size_t transient, size_
         size_t count = samples - done < o->capacity ? samples - done : o->capacity, first = transient + done;
         double peak;
         if (!set_boolean(&o->fmi, o->x_rel_max_on, true)) return false;
-        if (!sample(o, (double)first * period, (double)(first + count) * period, count, states + STATES * done)) return false;
+        if (!sample_step(o, (double)first * period, (double)(first + count) * period, count, states + STATES * done)) return false;
         if (!get_reals(&o->fmi, &o->x_rel_max, 1, &peak, 1)) return false;
         if (peak > *largest) *largest = peak;
     }
@@ -199,12 +199,12 @@ EXPORT bool sample_periods(Oscillator *o, double period, size_t transient, size_
 /* The largest displacements and accelerations over a step. */
 static bool find_peaks(Oscillator *o, double time, double target, double *peaks) {
     double reached;
-    return set_boolean(&o->fmi, o->peaks_on, true) && advance(&o->fmi, time, target, &reached)
+    return set_boolean(&o->fmi, o->peaks_on, true) && step_to(&o->fmi, time, target, &reached)
         && get_reals(&o->fmi, o->peaks, PEAKS, peaks, PEAKS) && set_boolean(&o->fmi, o->peaks_on, false);
 }
 
 /* Begin response number i, or any motion, at its start. */
-static bool begin_at(Oscillator *o, const Task *task, size_t i, const double *start) {
+static bool begin_motion(Oscillator *o, const Task *task, size_t i, const double *start) {
     Fmi *fmi = &o->fmi;
     double reals[MAX_REALS];
     for (size_t k = 0; k < o->real_count; k++) reals[k] = task->reals[i * o->real_count + k];
@@ -215,23 +215,23 @@ static bool begin_at(Oscillator *o, const Task *task, size_t i, const double *st
 }
 
 /* The start of a response: its own, or the end of the one before, with the same faces where the gap between unloaded springs is another one. */
-static void start_of(const Task *task, size_t i, double *start) {
+static void find_start(const Task *task, size_t i, double *start) {
     const double *given = task->is_chain && i ? task->ends + STATES * (i - 1) : task->starts + (task->is_chain ? 0 : STATES * i);
     double offset = task->traits[TRAITS * i + GAP_OFFSET], gap = i ? task->traits[TRAITS * (i - 1) + GAP_OFFSET] : task->gap;
     for (int j = 0; j < STATES; j++) start[j] = given[j];
     const double *traits = task->traits + TRAITS * i;
-    if (task->is_chain && (i || task->has_gap) && gap != offset && is_any(start)) for (int j = 0; j < STATES; j++) start[j] += j == X2 ? gap - offset : 0.0;
+    if (task->is_chain && (i || task->has_gap) && gap != offset && is_any_nonzero(start)) for (int j = 0; j < STATES; j++) start[j] += j == X2 ? gap - offset : 0.0;
     if (traits[WALL] != 0.0) start[X1] -= start[X2], start[X2] = 0.0;
-    if (!task->is_chain || !is_any(start)) return;
-    put_inside(start, traits);
+    if (!task->is_chain || !is_any_nonzero(start)) return;
+    move_inside(start, traits);
 }
 
 /* Some periods of the transient, with the work that they are. The last step, which begins after half of it, ends where one over all would, to the last bit. */
-static bool drop(Oscillator *o, const Task *task, Progress *progress, int32_t *impacts, size_t *work) {
+static bool run_transient(Oscillator *o, const Task *task, Progress *progress, int32_t *impacts, size_t *work) {
     size_t i = progress->response, left = (size_t)task->transients[i] - progress->period, count = left < task->piece ? left : task->piece;
     int32_t before = *impacts;
     progress->period += count;
-    if (!advance(&o->fmi, progress->time, (double)progress->period * task->periods[i], &progress->time)) return false;
+    if (!step_to(&o->fmi, progress->time, (double)progress->period * task->periods[i], &progress->time)) return false;
     if (!get_integer(&o->fmi, o->impact_count, impacts)) return false;
     *work += count + (size_t)(*impacts - before);
     return true;
@@ -251,7 +251,7 @@ static int32_t apply_rule(const Task *task, size_t i, double tolerance, int (*ru
 }
 
 /* Run on and decide: peaks over the periods after which the response repeats, or some, and the impacts of one that has repeated, over its own period. */
-static bool run_on(Oscillator *o, const Task *task, size_t i) {
+static bool run_on_and_confirm(Oscillator *o, const Task *task, size_t i) {
     double period = task->periods[i], *memory = task->memory;
     int32_t *counts = task->counts + COUNTS * i, later;
     size_t first = (size_t)task->transients[i] + task->samples, n = (size_t)counts[PERIODS], span = n < task->peak_periods ? n : task->peak_periods;
@@ -261,14 +261,14 @@ static bool run_on(Oscillator *o, const Task *task, size_t i) {
     if (span && !find_peaks(o, done, (double)(first + span) * period, task->peaks + PEAKS * i)) return false;
     if (span) done = (double)(first + span) * period;
     if (counts[HOW] == REPEATED) {
-        if (end > done && !advance(&o->fmi, done, end, &done)) return false;
+        if (end > done && !step_to(&o->fmi, done, end, &done)) return false;
         if (!get_integer(&o->fmi, o->impact_count, &later)) return false;
         memory[OWN_IMPACTS] = (double)(later - counts[AFTER]);
         task->impacts[i] = memory[OWN_IMPACTS] / (double)n;
     }
     memory[IMPACTS] = (double)(counts[AFTER] - counts[BEFORE]);
     memory[MUST] = task->traits[TRAITS * i + MUST_IMPACT];
-    kernel_confirm(memory, 0.0);
+    kernel_confirm_by_impacts(memory, 0.0);
     counts[PERIODS] = (int32_t)memory[MULTIPLICITY];
     counts[HOW] = (int32_t)memory[DECIDED];
     return true;
@@ -281,12 +281,12 @@ EXPORT double nearest_state(const double *states, size_t count, double frequency
     memory[GAP] = gap;
     for (size_t k = 0; k < STATES; k++) memory[GIVEN + k] = state[k];
     for (size_t k = 0; k < STATES * count; k++) memory[HEAD + k] = states[k];
-    kernel_nearest(memory, 0.0);
+    kernel_write_nearest_state(memory, 0.0);
     return memory[DISTANCE];
 }
 
 /* Note the state of known motions that a response has reached, from one: so near when it was compared before, and nearer now; the end is its own. */
-static bool compare(Oscillator *o, const Task *task, Progress *progress) {
+static bool note_reached_state(Oscillator *o, const Task *task, Progress *progress) {
     size_t i = progress->response;
     const Known *known = task->known;
     const double *states = known->states;
@@ -303,7 +303,7 @@ static bool compare(Oscillator *o, const Task *task, Progress *progress) {
 }
 
 /* Sample a response whose transient is over, and decide. */
-static bool finish(Oscillator *o, const Task *task, size_t i) {
+static bool sample_and_decide(Oscillator *o, const Task *task, size_t i) {
     Fmi *fmi = &o->fmi;
     double *states = task->states + STATES * task->samples * i, *last = states + STATES * (task->samples - 1);
     int32_t *counts = task->counts + COUNTS * i;
@@ -316,21 +316,21 @@ static bool finish(Oscillator *o, const Task *task, size_t i) {
     task->impacts[i] = (double)(counts[AFTER] - counts[BEFORE]) / (double)task->samples;
     round_state(last, task->traits + TRAITS * i, task->ends + STATES * i);
     if (task->loose != 0.0) {
-        counts[NEARLY] = apply_rule(task, i, task->loose, kernel_repeat);
+        counts[NEARLY] = apply_rule(task, i, task->loose, kernel_write_least_multiplicity);
         task->deviations[i] = task->memory[DEVIATION];
-        counts[PERIODS] = apply_rule(task, i, task->tolerance, kernel_repeat);
+        counts[PERIODS] = apply_rule(task, i, task->tolerance, kernel_write_least_multiplicity);
     }
     if (!task->decides) return true;
-    counts[PERIODS] = apply_rule(task, i, task->tolerance, kernel_decide);
+    counts[PERIODS] = apply_rule(task, i, task->tolerance, kernel_write_decided_multiplicity);
     counts[HOW] = (int32_t)task->memory[DECIDED];
-    return run_on(o, task, i);
+    return run_on_and_confirm(o, task, i);
 }
 
 /* Begin the motion of a row at its start. */
 EXPORT bool begin(Oscillator *o, const Task *task, size_t i) {
     double start[STATES];
-    start_of(task, i, start);
-    return begin_at(o, task, i, start);
+    find_start(task, i, start);
+    return begin_motion(o, task, i, start);
 }
 
 /* Compute responses from where the progress stands: DONE, PAUSED after some work (periods and impacts), or BROKEN. */
@@ -345,12 +345,12 @@ EXPORT int respond(Oscillator *o, const Task *task, Progress *progress, size_t b
         progress->is_begun = true;
         while (progress->period < task->transients[i] && !counts[REACHED]) {
             if (work >= budget) return PAUSED;
-            if (!drop(o, task, progress, &impacts, &work)) return BROKEN;
-            if (task->known && !compare(o, task, progress)) return BROKEN;
+            if (!run_transient(o, task, progress, &impacts, &work)) return BROKEN;
+            if (task->known && !note_reached_state(o, task, progress)) return BROKEN;
         }
         if (counts[REACHED]) continue;
         if (work >= budget) return PAUSED;
-        if (!finish(o, task, i)) return BROKEN;
+        if (!sample_and_decide(o, task, i)) return BROKEN;
         work += task->samples + (size_t)(counts[AFTER] - counts[BEFORE]);
     }
     return DONE;
@@ -358,8 +358,8 @@ EXPORT int respond(Oscillator *o, const Task *task, Progress *progress, size_t b
 
 EXPORT size_t memory_size(size_t samples) { return HEAD + (STATE + COLUMNS + 1) * samples; }
 
-EXPORT int decide_multiplicity(double *memory) { return kernel_decide(memory, 0.0); }
+EXPORT int decide_multiplicity(double *memory) { return kernel_write_decided_multiplicity(memory, 0.0); }
 
-EXPORT int find_repetition(double *memory) { return kernel_repeat(memory, 0.0); }
+EXPORT int find_repetition(double *memory) { return kernel_write_least_multiplicity(memory, 0.0); }
 
-EXPORT int rest_and_threshold(double *memory) { return kernel_rest_and_threshold(memory, 0.0); }
+EXPORT int rest_and_threshold(double *memory) { return kernel_write_rest_and_threshold(memory, 0.0); }

@@ -8,7 +8,7 @@ static Complex product(Complex a, Complex b) { return (Complex){a.re * b.re - a.
 
 static Complex turned(double turns) {
     double both[2];
-    kernel_turn(both, turns);
+    kernel_write_cosine_and_sine(both, turns);
     return (Complex){both[0], both[1]};
 }
 

@@ -15,34 +15,34 @@ MOST_TURNS = 1e9
 NO_NUMBER = 1e400 - 1e400
 
 
-def begin_force(m):
+def restart_force_cubic(m):
     """Begin the force's cubic at the communication point, where one of its inputs was set."""
     if m[at.FORCE_SET] != 0.0:
         m[at.FORCE_TIME] = m[at.TIME]
         m[at.FORCE_SET] = 0.0
 
 
-def force(m, t):
+def box_force_at(m, t):
     """Return the force on the box, N, ``t`` after it was set."""
     return m[at.BOX_FORCE] + t * (
         m[at.BOX_FORCE_1] + 0.5 * t * (m[at.BOX_FORCE_2] + t * m[at.BOX_FORCE_3] / 3.0)
     )
 
 
-def force_now(m):
+def box_force_and_rates(m):
     """Return the force on the box at the communication point, N, and two time derivatives."""
     t = m[at.TIME] - m[at.FORCE_TIME]
     second = m[at.BOX_FORCE_2] + t * m[at.BOX_FORCE_3]
     first = m[at.BOX_FORCE_1] + t * (m[at.BOX_FORCE_2] + 0.5 * t * m[at.BOX_FORCE_3])
-    return force(m, t), first, second
+    return box_force_at(m, t), first, second
 
 
-def static_current(m, speed):
+def current_without_inductance(m, speed):
     """Return the current without inductance, A: (c) with L = 0."""
     return (m[at.VOLTAGE] - m[at.MOTOR_CONSTANT] * speed) / m[at.ARMATURE_RESISTANCE]
 
 
-def accelerations(m, sine, cosine, p, q):
+def box_and_rotor_accelerations(m, sine, cosine, p, q):
     """Return y'' and w' that (a) and (b) have for right-hand sides ``p`` and ``q``."""
     mass, inertia, coupling = m[at.BOX_MASS], m[at.ROTOR_INERTIA], m[at.UNBALANCE] * cosine
     unbalance = m[at.UNBALANCE]
@@ -52,7 +52,7 @@ def accelerations(m, sine, cosine, p, q):
     return (inertia * p - coupling * q) / determinant, (mass * q - coupling * p) / determinant
 
 
-def compute_rates(m, stage, t):
+def write_rates(m, stage, t):
     """Write the rates at STAGE, ``t`` s after the force was set, to row ``stage`` of RATES."""
     turn = m[at.TURN] + m[at.STAGE + at.ROTATION] / TWO_PI
     position, velocity = m[at.STAGE + at.POSITION], m[at.STAGE + at.VELOCITY]
@@ -66,13 +66,13 @@ def compute_rates(m, stage, t):
         drop = m[at.VOLTAGE] - m[at.ARMATURE_RESISTANCE] * current - m[at.MOTOR_CONSTANT] * speed
         current_rate = drop / m[at.ARMATURE_INDUCTANCE]  # (c)
     else:
-        current = static_current(m, speed)
+        current = current_without_inductance(m, speed)
     torque = m[at.MOTOR_CONSTANT] * current  # right-hand side of (b)
-    pushed = force(m, t)
+    pushed = box_force_at(m, t)
     damped = m[at.BOX_DAMPING] * velocity
     # right-hand side of (a)
     p = m[at.UNBALANCE] * speed * speed * sine - damped - m[at.BOX_STIFFNESS] * position + pushed
-    box, rotor = accelerations(m, sine, cosine, p, torque)
+    box, rotor = box_and_rotor_accelerations(m, sine, cosine, p, torque)
     row = at.RATES + stage * at.STATES
     m[row + at.POSITION] = velocity
     m[row + at.VELOCITY] = box

@@ -7,10 +7,10 @@ the state, so a run that is resumed gives the same bits.
 
 import math
 
-from ..numerics.elementary import TWO_PI, fraction
+from ..numerics.elementary import TWO_PI, fraction_of_turn
 from . import memory as at
-from .equations import compute_rates
-from .tableau import DEVIATION_3, DEVIATION_5, NODES, WHOLE, sum_rates
+from .equations import write_rates
+from .tableau import DEVIATION_3, DEVIATION_5, NODES, WHOLE, write_rate_sums
 
 TOLERANCE = 1e-12  # of each sub-step, relative to the states' scales
 # the longest sub-step, whatever the estimate: it could be blind to what goes round in between
@@ -23,13 +23,13 @@ def compute_stages(m, t, h):
     """Compute a sub-step's stages, ``t`` after the force was set; its end is in NEXT."""
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s]
-    compute_rates(m, 0, t)
+    write_rates(m, 0, t)
     for stage in range(1, at.STAGES):
-        sum_rates(m, stage - 1, at.STAGE)
+        write_rate_sums(m, stage - 1, at.STAGE)
         for s in range(at.STATES):
             m[at.STAGE + s] = m[at.STATE + s] + h * m[at.STAGE + s]
-        compute_rates(m, stage, t + NODES[stage] * h)
-    sum_rates(m, WHOLE, at.NEXT)
+        write_rates(m, stage, t + NODES[stage] * h)
+    write_rate_sums(m, WHOLE, at.NEXT)
     for s in range(at.STATES):
         m[at.NEXT + s] = m[at.STATE + s] + h * m[at.NEXT + s]
     m[at.WORK] += at.STAGES
@@ -58,7 +58,7 @@ def error_scale(m, state, h):
 
 def squared_error(m, row, h):
     """Return the squared difference of two orders, over what is allowed; uses STAGE."""
-    sum_rates(m, row, at.STAGE)
+    write_rate_sums(m, row, at.STAGE)
     total = 0.0
     for state in range(at.CONTROLLED):
         error = m[at.STAGE + state] * h / (TOLERANCE * error_scale(m, state, h) + TINY)
@@ -79,14 +79,14 @@ def accept_substep(m):
     for state in range(at.STATES):
         m[at.STATE + state] = m[at.NEXT + state]
     m[at.STATE + at.ROTATION] = 0.0
-    m[at.TURN] = fraction(m[at.TURN] + turned / TWO_PI)
+    m[at.TURN] = fraction_of_turn(m[at.TURN] + turned / TWO_PI)
     part = turned + m[at.ANGLE_LOW]
     total = m[at.ANGLE] + part
     m[at.ANGLE_LOW] = part - (total - m[at.ANGLE])
     m[at.ANGLE] = total
 
 
-def length_factor(ratio):
+def next_length_factor(ratio):
     """Return the next sub-step's length over this one's: the eighth root of 1 over the error."""
     if ratio < 1e-8:
         return LARGEST
@@ -116,11 +116,11 @@ def integrate_step(m, length):
         if ratio <= 1.0:
             accept_substep(m)
             t = length if h == left else t + h
-            m[at.HINT] = h * length_factor(ratio)
+            m[at.HINT] = h * next_length_factor(ratio)
         elif h <= 1e-14 * length:
             return at.NOT_FINITE
         else:
             m[at.HINT] = (
-                h * min(1.0, length_factor(ratio)) if ratio - ratio == 0.0 else h * SMALLEST
+                h * min(1.0, next_length_factor(ratio)) if ratio - ratio == 0.0 else h * SMALLEST
             )
     return at.OK

@@ -5,7 +5,7 @@ The states reached, and what follows from them with the inputs as they are now.
 
 from ..numerics.elementary import sincos_turns
 from . import memory as at
-from .equations import accelerations, force_now, static_current
+from .equations import box_and_rotor_accelerations, box_force_and_rates, current_without_inductance
 
 
 def write_outputs(m):
@@ -13,17 +13,19 @@ def write_outputs(m):
     position, velocity = m[at.STATE + at.POSITION], m[at.STATE + at.VELOCITY]
     speed = m[at.STATE + at.ROTATION_SPEED]
     current = (
-        m[at.STATE + at.CURRENT] if m[at.ARMATURE_INDUCTANCE] > 0.0 else static_current(m, speed)
+        m[at.STATE + at.CURRENT]
+        if m[at.ARMATURE_INDUCTANCE] > 0.0
+        else current_without_inductance(m, speed)
     )
     torque = m[at.MOTOR_CONSTANT] * current
     unbalance = m[at.UNBALANCE]
     p = unbalance * speed * speed * sine - m[at.BOX_DAMPING] * velocity
-    p = p - m[at.BOX_STIFFNESS] * position + force_now(m)[0]
-    box, rotor = accelerations(m, sine, cosine, p, torque)
+    p = p - m[at.BOX_STIFFNESS] * position + box_force_and_rates(m)[0]
+    box, rotor = box_and_rotor_accelerations(m, sine, cosine, p, torque)
     m[at.BOX_POSITION] = position
     m[at.BOX_VELOCITY] = velocity
     m[at.BOX_ACCELERATION] = box
-    m[at.BOX_JERK] = jerks(m, sine, cosine, box, rotor)[0]
+    m[at.BOX_JERK] = box_and_rotor_jerks(m, sine, cosine, box, rotor)[0]
     m[at.SPEED] = speed
     m[at.MOTOR_CURRENT] = current
     m[at.MOTOR_TORQUE] = torque
@@ -49,10 +51,14 @@ def current_rate(m, rotor):
     return -constant * rotor / m[at.ARMATURE_RESISTANCE]
 
 
-def jerks(m, sine, cosine, box, rotor):
+def box_and_rotor_jerks(m, sine, cosine, box, rotor):
     """Return the third derivatives of box and rotor: the equations once more, voltage constant."""
     unbalance, speed = m[at.UNBALANCE], m[at.STATE + at.ROTATION_SPEED]
-    p = force_now(m)[1] - m[at.BOX_DAMPING] * box - m[at.BOX_STIFFNESS] * m[at.STATE + at.VELOCITY]
+    p = (
+        box_force_and_rates(m)[1]
+        - m[at.BOX_DAMPING] * box
+        - m[at.BOX_STIFFNESS] * m[at.STATE + at.VELOCITY]
+    )
     p += unbalance * speed * (3.0 * rotor * sine + speed * speed * cosine)
     q = m[at.MOTOR_CONSTANT] * current_rate(m, rotor) + unbalance * box * speed * sine
-    return accelerations(m, sine, cosine, p, q)
+    return box_and_rotor_accelerations(m, sine, cosine, p, q)

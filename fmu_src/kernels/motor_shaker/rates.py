@@ -2,8 +2,8 @@
 
 from ..numerics.elementary import sincos_turns
 from . import memory as at
-from .equations import accelerations, force_now
-from .outputs import current_rate, jerks
+from .equations import box_and_rotor_accelerations, box_force_and_rates
+from .outputs import box_and_rotor_jerks, current_rate
 
 
 def differentiate(m, time):
@@ -14,12 +14,12 @@ def differentiate(m, time):
     current = current_rate(m, rotor)
     torque = m[at.MOTOR_CONSTANT] * current
     damping = m[at.BOX_DAMPING] * m[at.BOX_VELOCITY] * m[at.BOX_VELOCITY]
-    work = force_now(m)[0] * m[at.BOX_VELOCITY]
+    work = box_force_and_rates(m)[0] * m[at.BOX_VELOCITY]
     to = at.OUTPUT_RATES - at.BOX_POSITION
     m[to + at.BOX_POSITION] = m[at.BOX_VELOCITY]
     m[to + at.BOX_VELOCITY] = box
     m[to + at.BOX_ACCELERATION] = m[at.BOX_JERK]
-    m[to + at.BOX_JERK] = snap(m, sine, cosine, rotor)
+    m[to + at.BOX_JERK] = box_snap(m, sine, cosine, rotor)
     m[to + at.ANGLE] = speed
     m[to + at.SPEED] = rotor
     m[to + at.MOTOR_CURRENT] = current
@@ -32,28 +32,30 @@ def differentiate(m, time):
     return at.OK
 
 
-def right_hand_side(m, sine):
+def box_equation_right_side(m, sine):
     speed = m[at.SPEED]
     p = m[at.UNBALANCE] * speed * speed * sine - m[at.BOX_DAMPING] * m[at.BOX_VELOCITY]
-    return p - m[at.BOX_STIFFNESS] * m[at.BOX_POSITION] + force_now(m)[0]
+    return p - m[at.BOX_STIFFNESS] * m[at.BOX_POSITION] + box_force_and_rates(m)[0]
 
 
 def rotor_acceleration(m, sine, cosine):
-    return accelerations(m, sine, cosine, right_hand_side(m, sine), m[at.MOTOR_TORQUE])[1]
+    return box_and_rotor_accelerations(
+        m, sine, cosine, box_equation_right_side(m, sine), m[at.MOTOR_TORQUE]
+    )[1]
 
 
-def snap(m, sine, cosine, b):
+def box_snap(m, sine, cosine, b):
     """Return the fourth derivative of the box's position; ``b`` is the rotor's acceleration."""
     unbalance, w, a = m[at.UNBALANCE], m[at.SPEED], m[at.BOX_ACCELERATION]
-    a_dot, b_dot = jerks(m, sine, cosine, a, b)
+    a_dot, b_dot = box_and_rotor_jerks(m, sine, cosine, a, b)
     resistance, constant = m[at.ARMATURE_RESISTANCE], m[at.MOTOR_CONSTANT]
     if m[at.ARMATURE_INDUCTANCE] > 0.0:
         current = -(resistance * current_rate(m, b) + constant * b) / m[at.ARMATURE_INDUCTANCE]
     else:
         current = -constant * b_dot / resistance
-    p = force_now(m)[2] - m[at.BOX_DAMPING] * a_dot - m[at.BOX_STIFFNESS] * a
+    p = box_force_and_rates(m)[2] - m[at.BOX_DAMPING] * a_dot - m[at.BOX_STIFFNESS] * a
     p += unbalance * (
         (3.0 * b * b - w * w * w * w) * sine + 6.0 * w * w * b * cosine + 4.0 * w * b_dot * sine
     )
     q = constant * current + unbalance * ((w * w * cosine + b * sine) * a + 2.0 * w * sine * a_dot)
-    return accelerations(m, sine, cosine, p, q)[0]
+    return box_and_rotor_accelerations(m, sine, cosine, p, q)[0]

@@ -5,9 +5,9 @@ An instance is one flat memory.
 
 import math
 
-from ..numerics.elementary import TWO_PI, fraction
+from ..numerics.elementary import TWO_PI, fraction_of_turn
 from . import memory as at
-from .equations import begin_force
+from .equations import restart_force_cubic
 from .integrate import integrate_step
 from .outputs import write_outputs
 
@@ -36,7 +36,7 @@ def initialize(m, time):
     m[at.STATE + at.ROTATION_SPEED] = m[at.SPEED_START]
     m[at.STATE + at.CURRENT] = m[at.CURRENT_START]
     m[at.ANGLE] = m[at.ANGLE_START]
-    m[at.TURN] = fraction(m[at.ANGLE_START] / TWO_PI)
+    m[at.TURN] = fraction_of_turn(m[at.ANGLE_START] / TWO_PI)
     write_outputs(m)
     return check_finite(m)
 
@@ -53,7 +53,7 @@ def restore(m, time):
 
 def advance(m, time):
     """Advance to ``time`` (s); after another code than OK the memory is to be thrown away."""
-    begin_force(m)
+    restart_force_cubic(m)
     before = m[at.TIME]
     length = time - before
     fastest = math.sqrt(m[at.BOX_STIFFNESS] / m[at.BOX_MASS]) + abs(m[at.STATE + at.ROTATION_SPEED])
@@ -64,7 +64,7 @@ def advance(m, time):
     allowed = min(WORK_MOST, WORK_BASE + WORK_RATE * fastest * max(length, 0.0))
     m[at.WORK_LIMIT] = min(allowed, m[at.EVALUATION_LIMIT])
     too_many = at.LIMITED if m[at.WORK_LIMIT] < allowed else at.UNFINISHED
-    least = at.STAGES / STABLE * fastest_decay(m) * length
+    least = at.STAGES / STABLE * fastest_decay_rate(m) * length
     if least > m[at.WORK_LIMIT]:
         m[at.WORK] = least
         m[at.REPORT] = before
@@ -79,7 +79,7 @@ def advance(m, time):
     return check_finite(m)
 
 
-def fastest_decay(m):
+def fastest_decay_rate(m):
     """Return the largest decay rate, 1/s: of damper, armature or, without inductance, the rotor."""
     constant, resistance = m[at.MOTOR_CONSTANT], m[at.ARMATURE_RESISTANCE]
     if m[at.ARMATURE_INDUCTANCE] > 0.0:
@@ -91,12 +91,13 @@ def fastest_decay(m):
 
 def refresh(m, time):
     """Write the outputs for the inputs as they are now; ``time`` is not used."""
-    begin_force(m)
+    restart_force_cubic(m)
     write_outputs(m)
     return check_finite(m)
 
 
 def check_finite(m):
+    """Return OK, or NOT_FINITE if an output is no finite number."""
     total = 0.0
     for i in range(at.BOX_POSITION, at.TIME):
         total += m[i]

@@ -114,7 +114,7 @@ SLOTS = tuple(RATES + stage * STATES for row in ROWS for stage in row)
 BEGIN = tuple(sum(map(len, ROWS[:row])) for row in range(len(ROWS) + 1))
 
 
-def sum_rates(m, row, to):
+def write_rate_sums(m, row, to):
     """Write the sums of a row of the table over the rates of each state into slots from ``to``."""
     for s in range(STATES):
         m[to + s] = WEIGHTS[BEGIN[row]] * m[SLOTS[BEGIN[row]] + s]

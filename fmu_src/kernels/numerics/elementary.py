@@ -62,13 +62,13 @@ def exp_decay(x):
     return y
 
 
-def fraction(u):
+def fraction_of_turn(u):
     """Return the part of ``u`` in [0, 1): an angle in turns without its full turns."""
     f = u - math.floor(u)
     return f if f < 1.0 else 0.0
 
 
-def small_rotation(y):  # inline
+def cosine_and_sinc(y):  # inline
     """Return ``cos x``, ``sin(x)/x`` of ``y = x**2``, ``|y| <= 0.42``; cosh, sinh where y < 0."""
     y2 = y * y
     y4 = y2 * y2

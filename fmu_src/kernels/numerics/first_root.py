@@ -32,7 +32,7 @@ def parabola_root(h0, h1, h2):
     return INFINITE
 
 
-def lowest_curvature(h2, h3, h4, bound, s):
+def lowest_parabola_curvature(h2, h3, h4, bound, s):
     """Return c such that ``h0 + h1 t + c t^2/2`` is below the quintic for ``0 <= t <= s``."""
     bent = h4 * (1.0 / 12.0) - bound * s * (1.0 / 60.0)
     lowered = h3 * (1.0 / 3.0) + (s * bent if bent < 0.0 else 0.0)
@@ -64,7 +64,7 @@ def clear_step(h0, h1, h2, h3, h4, bound, reach):
     far = parabola_root(h0, h1, h2)
     if far > reach:
         far = reach
-    clear = parabola_root(h0, h1, lowest_curvature(h2, h3, h4, bound, far))
+    clear = parabola_root(h0, h1, lowest_parabola_curvature(h2, h3, h4, bound, far))
     # rising, and no parabola below turns down before the lowest curvature vanishes
     if h1 >= 0.0 and h2 > 0.0:
         bent = (h4 if h4 < 0.0 else 0.0) * (1.0 / 6.0) - bound * far * (1.0 / 30.0)
@@ -77,7 +77,7 @@ def clear_step(h0, h1, h2, h3, h4, bound, reach):
         if clear > 0.7 * far:
             break
         s = math.sqrt(clear * far)
-        root = parabola_root(h0, h1, lowest_curvature(h2, h3, h4, bound, s))
+        root = parabola_root(h0, h1, lowest_parabola_curvature(h2, h3, h4, bound, s))
         if root >= s:
             clear = s
         else:
@@ -87,7 +87,7 @@ def clear_step(h0, h1, h2, h3, h4, bound, reach):
     return clear
 
 
-def next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
+def next_step_or_root(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
     """Return a step of the walk from ``tau``, h0 of any sign; and whether it ends on the root."""
     if h0 <= 0.0:
         return 0.0, True
@@ -99,7 +99,7 @@ def next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
 
 
 def clear_step_or_root(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
-    """Return what :func:`next_step` does, also from ``h0 = 0 < h1`` and ``h0 = h1 = 0 < h2``."""
+    """Do as :func:`next_step_or_root`, also from ``h0 = 0 < h1`` and ``h0 = h1 = 0 < h2``."""
     # powers of time only: scaled amplitudes take the same steps
     scale = 1.0 / bound if bound > LEAST_BOUND else 1.0
     h0, h1, h2 = h0 * scale, h1 * scale, h2 * scale

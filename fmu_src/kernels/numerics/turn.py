@@ -3,7 +3,7 @@
 from .elementary import sincos_turns
 
 
-def turn(m, turns):
+def write_cosine_and_sine(m, turns):
     """Write cosine and sine of ``2 pi`` times a number of turns."""
     m[1], m[0] = sincos_turns(turns)
     return 0

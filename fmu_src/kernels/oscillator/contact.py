@@ -6,7 +6,7 @@ pulled apart. Where f vanishes, the first of its derivatives that does not vanis
 """
 
 from . import memory as at
-from .excitation import cubic_drive, drive_at
+from .excitation import cubic_drive_derivatives, drive_and_rate_at
 
 ROUNDING = 1e-14
 # with a cubic forcing, from rest, some derivative of f up to the fifth does not vanish, or all do
@@ -19,18 +19,18 @@ def gap_acceleration(m, x, v, cosine, sine, tau):  # inline
     if m[at.PRELOAD] != 0.0:  # rarely
         force += m[at.PRELOAD]
     if m[at.UNEQUAL] != 0.0:  # rarely
-        drive, _ = drive_at(m, at.GAP, cosine, sine, tau)
+        drive, _ = drive_and_rate_at(m, at.GAP, cosine, sine, tau)
         force += drive
     return force
 
 
-def first_nonzero_derivative(m, x, v, lowest):
+def first_nonzero_force_derivative(m, x, v, lowest):
     """Return order >= ``lowest`` (-1: none) and value of f's first derivative that is not 0."""
     sine, cosine = m[at.SINE], m[at.COSINE]
     d_cos, d_sin = m[at.OSCILLATOR_3 + at.DRIVE], m[at.OSCILLATOR_3 + at.DRIVE + 1]
-    c0, c1, c2, c3 = cubic_drive(m, at.OSCILLATOR_3, 0.0)
+    c0, c1, c2, c3 = cubic_drive_derivatives(m, at.OSCILLATOR_3, 0.0)
     g_cos, g_sin = m[at.GAP + at.DRIVE], m[at.GAP + at.DRIVE + 1]
-    g0, g1, g2, g3 = cubic_drive(m, at.GAP, 0.0)
+    g0, g1, g2, g3 = cubic_drive_derivatives(m, at.GAP, 0.0)
     eta, twice = m[at.ETA], 2.0 * m[at.OSCILLATOR_3 + at.DAMPING]
     square = m[at.OSCILLATOR_3 + at.OMEGA_SQUARED]
     low, low_size, high, high_size = x, abs(x), v, abs(v)

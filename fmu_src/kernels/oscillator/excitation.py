@@ -9,12 +9,12 @@ force on it over its mass; each oscillator, and the gap, has its shares of these
 from ..numerics.elementary import TWO_PI
 from ..numerics.first_root import INFINITE
 from . import memory as at
-from .nodes import set_grid
-from .parameters import set_side
-from .secular import set_secular
+from .nodes import set_node_grid
+from .parameters import set_side_constants
+from .secular import set_growing_amplitudes
 
 
-def inputs_changed(m):
+def have_inputs_changed(m):
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         for i in range(3):
             if m[at.CUBIC + 6 * i + at.ON] != 0.0 and m[at.CUBIC_SET + i] != 0.0:
@@ -32,9 +32,9 @@ def inputs_changed(m):
 def begin_segment(m):
     """Set the excitation from the present inputs; a cubic runs on where its inputs were not set."""
     scale = 1.0 / m[at.OMEGA]
-    renew_cubic(m, 0, at.BOX_ACCELERATION, at.SEGMENT_INPUTS + 2, -scale * scale)
-    renew_cubic(m, 1, at.FORCE1, at.SEGMENT_INPUTS + 8, 1.0)
-    renew_cubic(m, 2, at.FORCE2, at.SEGMENT_INPUTS + 12, 1.0)
+    restart_cubic_if_set(m, 0, at.BOX_ACCELERATION, at.SEGMENT_INPUTS + 2, -scale * scale)
+    restart_cubic_if_set(m, 1, at.FORCE1, at.SEGMENT_INPUTS + 8, 1.0)
+    restart_cubic_if_set(m, 2, at.FORCE2, at.SEGMENT_INPUTS + 12, 1.0)
     for i in range(6):
         m[at.SEGMENT_INPUTS + i] = m[at.BOX_AMPLITUDE + i]
     for i in range(10):
@@ -42,27 +42,27 @@ def begin_segment(m):
     set_excitation(m)
 
 
-def renew_cubic(m, place, inputs, known, unit):
-    """Restart a cubic if an input was set or changed; ``unit`` turns SI into a forcing."""
-    begins = m[at.CUBIC_SET + place] != 0.0
+def restart_cubic_if_set(m, number, inputs, segment_inputs, factor):
+    """Restart a cubic if an input was set or changed; ``factor`` turns SI into a forcing."""
+    begins = m[at.CUBIC_SET + number] != 0.0
     for i in range(4):
-        if m[known + i] != m[inputs + i]:
+        if m[segment_inputs + i] != m[inputs + i]:
             begins = True
     if not begins:
         return
-    cubic, scale = at.CUBIC + 6 * place, 1.0 / m[at.OMEGA]
+    cubic, scale = at.CUBIC + 6 * number, 1.0 / m[at.OMEGA]
     m[cubic + at.AGE] = 0.0
     m[cubic + at.ON] = 0.0
     for i in range(4):
-        m[cubic + i] = m[inputs + i] * unit
-        unit *= scale
+        m[cubic + i] = m[inputs + i] * factor
+        factor *= scale
         if i > 0 and m[inputs + i] != 0.0:
             m[cubic + at.ON] = 1.0
 
 
-def mirror(m):
+def mirror_system(m):
     m[at.SIDE] = -m[at.SIDE]
-    set_side(m)
+    set_side_constants(m)
     set_excitation(m)
 
 
@@ -74,31 +74,31 @@ def set_excitation(m):
     m[at.ETA] = eta
     m[at.ETA_TURNS] = eta / TWO_PI
     m[at.FORCING] = amplitude * eta * eta
-    pushed = is_any(m, at.SEGMENT_INPUTS + 8, 8)
-    m[at.CUBIC_PRESENT] = 1.0 if pushed or is_any(m, at.SEGMENT_INPUTS + 2, 4) else 0.0
-    forced = is_any(m, at.SEGMENT_INPUTS + 6, 2)
+    pushed = is_any_nonzero(m, at.SEGMENT_INPUTS + 8, 8)
+    m[at.CUBIC_PRESENT] = 1.0 if pushed or is_any_nonzero(m, at.SEGMENT_INPUTS + 2, 4) else 0.0
+    forced = is_any_nonzero(m, at.SEGMENT_INPUTS + 6, 2)
     m[at.SHAKEN] = 1.0 if forced or m[at.FORCING] != 0.0 else 0.0
     m[at.UNEQUAL] = 1.0 if forced or pushed or m[at.WALL] != 0.0 or m[at.LIMIT] < INFINITE else 0.0
-    set_drive(m, at.BOX)
-    set_drive(m, at.GAP)
-    set_drive(m, at.OSCILLATOR_1)
-    set_drive(m, at.OSCILLATOR_2)
-    set_drive(m, at.OSCILLATOR_3)
-    set_grid(m)
-    set_secular(m)
-    set_harmonic(m, at.OSCILLATOR_1, at.HARMONIC_1)
-    set_harmonic(m, at.OSCILLATOR_2, at.HARMONIC_2)
-    set_harmonic(m, at.OSCILLATOR_3, at.HARMONIC_3)
+    set_harmonic_drive(m, at.BOX)
+    set_harmonic_drive(m, at.GAP)
+    set_harmonic_drive(m, at.OSCILLATOR_1)
+    set_harmonic_drive(m, at.OSCILLATOR_2)
+    set_harmonic_drive(m, at.OSCILLATOR_3)
+    set_node_grid(m)
+    set_growing_amplitudes(m)
+    set_forced_amplitudes(m, at.OSCILLATOR_1, at.HARMONIC_1)
+    set_forced_amplitudes(m, at.OSCILLATOR_2, at.HARMONIC_2)
+    set_forced_amplitudes(m, at.OSCILLATOR_3, at.HARMONIC_3)
 
 
-def is_any(m, first, count):
+def is_any_nonzero(m, first, count):
     for i in range(count):
         if m[first + i] != 0.0:
             return True
     return False
 
 
-def set_drive(m, b):
+def set_harmonic_drive(m, b):
     """Set a harmonic forcing: of an oscillator, of the box or of the gap."""
     shares, forces = b + at.SHARES, at.SEGMENT_INPUTS + 6
     m[b + at.DRIVE] = 0.0
@@ -107,13 +107,13 @@ def set_drive(m, b):
     )
 
 
-def harmonic_drive(m, b, cosine, sine):  # inline
+def harmonic_drive_and_rate(m, b, cosine, sine):  # inline
     """Return an oscillator's harmonic forcing, by sine alone, and its first derivative."""
     d_sin = m[b + at.DRIVE + 1]
     return d_sin * sine, d_sin * m[at.ETA] * cosine
 
 
-def set_harmonic(m, b, harmonic):
+def set_forced_amplitudes(m, b, harmonic):
     """Set the forced amplitudes a_i, b_i of (11), times the forcing; zeros where they grow."""
     d_cos, d_sin, eta = m[b + at.DRIVE], m[b + at.DRIVE + 1], m[at.ETA]
     m[harmonic] = 0.0
@@ -127,23 +127,23 @@ def set_harmonic(m, b, harmonic):
     m[harmonic + 1] = (d_sin * detuning + d_cos * twice) / square
 
 
-def drive_at(m, b, cosine, sine, tau):
+def drive_and_rate_at(m, b, cosine, sine, tau):
     """Return a forcing and its derivative at a phase, ``tau`` after the state's start."""
-    return drive_by_ages(m, b, cosine, sine, cubic_ages(m, tau))
+    return drive_and_rate_by_ages(m, b, cosine, sine, cubic_ages(m, tau))
 
 
-def drive_by_ages(m, b, cosine, sine, ages):
+def drive_and_rate_by_ages(m, b, cosine, sine, ages):
     """Return a forcing and its derivative at a phase, the cubics being so old."""
-    value, rate = harmonic_drive(m, b, cosine, sine)
+    value, rate = harmonic_drive_and_rate(m, b, cosine, sine)
     if m[at.CUBIC_PRESENT] == 0.0:
         return value, rate
-    q0, q1, _, _ = cubic_by_ages(m, b, ages)
+    q0, q1, _, _ = cubic_drive_by_ages(m, b, ages)
     return value + q0, rate + q1
 
 
-def cubic_drive(m, b, tau):
+def cubic_drive_derivatives(m, b, tau):
     """Return value and three derivatives of a forcing's cubic part."""
-    return cubic_by_ages(m, b, cubic_ages(m, tau))
+    return cubic_drive_by_ages(m, b, cubic_ages(m, tau))
 
 
 def cubic_ages(m, tau):  # inline
@@ -151,20 +151,20 @@ def cubic_ages(m, tau):  # inline
     return m[at.CUBIC + at.AGE] + tau, m[at.CUBIC_1 + at.AGE] + tau, m[at.CUBIC_2 + at.AGE] + tau
 
 
-def cubic_by_ages(m, b, ages):  # inline
+def cubic_drive_by_ages(m, b, ages):  # inline
     """Return value and three derivatives of a forcing's cubic part, the cubics being so old."""
     age, age_1, age_2 = ages
-    q0, q1, q2, q3 = cubic_at(m, at.CUBIC, age)
+    q0, q1, q2, q3 = cubic_derivatives(m, at.CUBIC, age)
     if m[at.UNEQUAL] != 0.0:  # rarely
         box, one, two = m[b + at.SHARES], m[b + at.SHARES + 1], m[b + at.SHARES + 2]
-        r0, r1, r2, r3 = cubic_at(m, at.CUBIC_1, age_1)
-        s0, s1, s2, s3 = cubic_at(m, at.CUBIC_2, age_2)
+        r0, r1, r2, r3 = cubic_derivatives(m, at.CUBIC_1, age_1)
+        s0, s1, s2, s3 = cubic_derivatives(m, at.CUBIC_2, age_2)
         q0, q1 = box * q0 + (one * r0 + two * s0), box * q1 + (one * r1 + two * s1)
         q2, q3 = box * q2 + (one * r2 + two * s2), box * q3 + (one * r3 + two * s3)
     return q0, q1, q2, q3
 
 
-def cubic_at(m, cubic, age):
+def cubic_derivatives(m, cubic, age):
     """Return value and three derivatives of a cubic, ``age`` after it began, in tau."""
     p0, p1, p2, p3 = m[cubic], m[cubic + 1], m[cubic + 2], m[cubic + 3]
     q2 = p2 + p3 * age
@@ -186,7 +186,7 @@ def input_derivative(m, first, order, age):
 
 def set_cubic_response(m, b, response):
     """Set the cubic that solves (6) for a cubic forcing, by comparing coefficients."""
-    cubic = cubic_drive(m, b, 0.0)
+    cubic = cubic_drive_derivatives(m, b, 0.0)
     w, twice = m[b + at.OMEGA_SQUARED], 2.0 * m[b + at.DAMPING]
     q3 = cubic[3] / w
     q2 = (cubic[2] - twice * q3) / w

@@ -26,7 +26,7 @@ def bernstein_coefficients(m, l0, l1, l2, r0, r1, r2, low):
     return l0, l0 + l1, b2, b3, r0 - r1, r0
 
 
-def present_coefficients(m, low):
+def interval_coefficients(m, low):
     return bernstein_coefficients(
         m,
         m[at.LEFT_VALUES],
@@ -39,31 +39,31 @@ def present_coefficients(m, low):
     )
 
 
-def lowest_after(m, h0, h1, h2, low):
+def lowest_left_coefficient(m, h0, h1, h2, low):
     """Return the lowest of the three coefficients at the left end of an interval."""
     fifth = m[at.HERMITE] * h1
     b2 = (h0 + 2.0 * fifth) + (m[at.HERMITE + 1] * h2 - low)
     return min(h0, min(h0 + fifth, b2))
 
 
-def lowest_before(m, h0, h1, h2, low):
+def lowest_right_coefficient(m, h0, h1, h2, low):
     """Return the lower of the two inner coefficients at the right end of an interval."""
     fifth = m[at.HERMITE] * h1
     b3 = (h0 - 2.0 * fifth) + (m[at.HERMITE + 1] * h2 - low)
     return min(h0 - fifth, b3)
 
 
-def has_no_root(b0, b1, b2, b3, b4, b5):
+def excludes_root(b0, b1, b2, b3, b4, b5):
     """Return whether the coefficients prove no root, but perhaps at the interval's start."""
     return min(min(b0, b1), min(b2, b3), b4) >= 0.0 and b5 > 0.0
 
 
-def interval_is_below(m, ceiling):
-    b0, b1, b2, b3, b4, b5 = present_coefficients(m, -m[at.REMAINDER])
+def is_interval_below(m, ceiling):
+    b0, b1, b2, b3, b4, b5 = interval_coefficients(m, -m[at.REMAINDER])
     return max(max(b0, b1), max(b2, b3), max(b4, b5)) <= ceiling
 
 
-def has_summit(m, start, stop):
+def may_have_summit(m, start, stop):
     """Return whether the event function may have a summit in a part of the present interval.
 
     It has none where its slope at the start outweighs what curvature and third derivative make of
@@ -71,7 +71,7 @@ def has_summit(m, start, stop):
     B6/120``: 2.15, 15 and 240 times the remainder over h, h^2 and h^3.
     """
     low = m[at.REMAINDER]
-    b0, b1, b2, b3, b4, b5 = present_coefficients(m, 0.0)
+    b0, b1, b2, b3, b4, b5 = interval_coefficients(m, 0.0)
     d0, d1, d2, d3, d4 = b1 - b0, b2 - b1, b3 - b2, b4 - b3, b5 - b4
     e0, e1, e2, e3 = d1 - d0, d2 - d1, d3 - d2, d4 - d3
     f0, f1, f2 = e1 - e0, e2 - e1, e3 - e2
@@ -94,11 +94,11 @@ def clear_part(b0, b1, b2, b3, b4, b5):
     """
     s = 0.5
     if b5 < 0.0:
-        s = last_crossing(b0, b1, b2, b3, b4, b5)
-    return s if 0.0 < s < 1.0 and part_is_clear(b0, b1, b2, b3, b4, b5, s) else 0.0
+        s = point_before_last_root(b0, b1, b2, b3, b4, b5)
+    return s if 0.0 < s < 1.0 and is_part_clear(b0, b1, b2, b3, b4, b5, s) else 0.0
 
 
-def last_crossing(b0, b1, b2, b3, b4, b5):
+def point_before_last_root(b0, b1, b2, b3, b4, b5):
     """Return a point just before the last root of a quintic negative at 1; 0 if none is found."""
     a1, a2 = 5.0 * (b1 - b0), 10.0 * ((b2 - b1) - (b1 - b0))
     a3 = 10.0 * ((b3 - b0) - 3.0 * (b2 - b1))
@@ -124,7 +124,7 @@ def last_crossing(b0, b1, b2, b3, b4, b5):
     return s * SAFETY
 
 
-def part_is_clear(b0, b1, b2, b3, b4, b5, s):
+def is_part_clear(b0, b1, b2, b3, b4, b5, s):
     """Return whether the part up to s has no negative coefficient, by de Casteljau's algorithm."""
     if b0 < 0.0:
         return False

@@ -47,7 +47,7 @@ def chattering_ends(m, separation, force):
     return force < 0.0 and 2.0 * separation < m[at.STICKING_TIME] * -force
 
 
-def count_impact(m, time, closing, e, sticks):
+def record_impact(m, time, closing, e, sticks):
     """Count an impact and its loss, with that of the flights left out where the masses stick."""
     m[at.IMPACT_COUNT] += 1.0
     m[at.IMPACT_TIME] = time

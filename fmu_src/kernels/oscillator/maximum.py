@@ -6,11 +6,11 @@ of its maximum.
 
 from ..numerics.first_root import EPS, LEAST_BOUND, clear_step, parabola_root
 from . import memory as at
-from .event_function import AHEAD, envelope, evaluate
-from .hermite import has_summit, interval_is_below
-from .motion_signal import evaluate_motion
-from .nodes import seek_interval
-from .roots import clear_from_node, cross_clear_intervals, step_inside_interval, walk
+from .event_function import AHEAD, envelope_bound, evaluate_event_function
+from .hermite import is_interval_below, may_have_summit
+from .motion_signal import evaluate_motion_signal
+from .nodes import move_to_interval_at
+from .roots import cross_clear_intervals, move_clear_from_node, step_inside_interval, walk_to_event
 from .series import taylor_value
 
 # least progress, of a spacing: a summit is flat, nothing is lost; it grows from step to step, so
@@ -21,7 +21,7 @@ SMALLEST, GROWTH = 1e-9, 1.25
 def walk_with_largest_gap(m, start, target):
     """Walk to ``target``; record the largest gap from ``start``, both ends left to the caller."""
     if m[at.SIDE] < 0.0:  # rarely
-        walk(m, target)
+        walk_to_event(m, target)
         record_least_gap(m, start, target if target < m[at.END] else m[at.END])
         return
     if m[at.SERIES] != 0.0:
@@ -29,7 +29,9 @@ def walk_with_largest_gap(m, start, target):
         # a concave gap stays below its tangents at both ends
         rise, fall = m[at.SERIES_GAP + 2], -taylor_value(m, at.SERIES_GAP + 2, m[at.END])
         if rise * fall * m[at.END] > (rise + fall) * m[at.X_REL_MAX]:
-            m[at.X_REL_MAX] = largest_value(m, at.X_REL_MAX, 1.0, start, stop, m[at.X_REL_MAX])
+            m[at.X_REL_MAX] = largest_signal_value(
+                m, at.X_REL_MAX, 1.0, start, stop, m[at.X_REL_MAX]
+            )
         return
     tau = start
     while m[at.END_KIND] == at.END_OPEN and m[at.CLEAR] <= target and m[at.WORK] < m[at.WORK_LIMIT]:
@@ -37,7 +39,7 @@ def walk_with_largest_gap(m, start, target):
             record_largest_gap(m, tau, m[at.RIGHT_AGE])
             cross_clear_intervals(m, target, m[at.X_REL_MAX])
             tau = m[at.LEFT_AGE]
-        elif m[at.CLEAR] != m[at.LEFT_AGE] or not clear_from_node(m):
+        elif m[at.CLEAR] != m[at.LEFT_AGE] or not move_clear_from_node(m):
             step_inside_interval(m)
     record_largest_gap(m, tau, target if target < m[at.END] else m[at.END])
 
@@ -47,33 +49,35 @@ def record_least_gap(m, start, stop):
     if m[at.X_REL_MAX] >= m[at.LIMIT]:
         return
     place = m[at.LEFT_AGE] + m[at.HALF_SPACING]
-    highest = largest_value(m, at.X_REL_MAX, -1.0, start, stop, m[at.X_REL_MAX] - m[at.LIMIT])
+    highest = largest_signal_value(
+        m, at.X_REL_MAX, -1.0, start, stop, m[at.X_REL_MAX] - m[at.LIMIT]
+    )
     m[at.X_REL_MAX] = m[at.LIMIT] + highest
     if m[at.SERIES] == 0.0:
-        seek_interval(m, place)
+        move_to_interval_at(m, place)
 
 
 def record_largest_gap(m, start, stop):
     highest = m[at.X_REL_MAX]
-    if interval_is_below(m, highest) or stop <= start:
+    if is_interval_below(m, highest) or stop <= start:
         return
-    if m[at.CLEAR] <= m[at.RIGHT_AGE] and not has_summit(m, start, stop):
+    if m[at.CLEAR] <= m[at.RIGHT_AGE] and not may_have_summit(m, start, stop):
         if start == m[at.LEFT_AGE] and m[at.LEFT_VALUES] > highest:
             highest = m[at.LEFT_VALUES]
         if stop == m[at.RIGHT_AGE] and m[at.RIGHT_VALUES] > highest:
             highest = m[at.RIGHT_VALUES]
         m[at.X_REL_MAX] = highest
         return
-    m[at.X_REL_MAX] = largest_value(m, at.X_REL_MAX, 1.0, start, stop, highest)
+    m[at.X_REL_MAX] = largest_signal_value(m, at.X_REL_MAX, 1.0, start, stop, highest)
 
 
 def record_peaks(m, start, stop):
     place = m[at.LEFT_AGE] + m[at.HALF_SPACING]
     for slot in range(at.X1_MAX, at.A2_MAX + 1):
-        highest = largest_value(m, slot, 1.0, start, stop, m[slot])
-        m[slot] = largest_value(m, slot, -1.0, start, stop, highest)
+        highest = largest_signal_value(m, slot, 1.0, start, stop, m[slot])
+        m[slot] = largest_signal_value(m, slot, -1.0, start, stop, highest)
     if m[at.SERIES] == 0.0:
-        seek_interval(m, place)
+        move_to_interval_at(m, place)
 
 
 def step_to_summit(h1, h2, h3, h4, bound, reach):
@@ -100,7 +104,7 @@ def gap_rounding(m, tau):
         return 2.0 * EPS * m[at.SERIES_GAP + 1] * m[at.END]
     p = at.POINT
     size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1]) + abs(m[at.EVENT_OFFSET])
-    size += envelope(m, at.OSCILLATOR_1, m[p], m[p + 1]) + envelope(
+    size += envelope_bound(m, at.OSCILLATOR_1, m[p], m[p + 1]) + envelope_bound(
         m, at.OSCILLATOR_2, m[p + 2], m[p + 3]
     )
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
@@ -114,14 +118,14 @@ def gap_rounding(m, tau):
 def evaluate_signal(m, slot, sign, tau):
     """Return value, four derivatives, a bound of the fifth, and the value's rounding error."""
     if slot == at.X_REL_MAX:
-        h0, h1, h2, h3, h4, bound = evaluate(m, tau)
+        h0, h1, h2, h3, h4, bound = evaluate_event_function(m, tau)
         rounding = gap_rounding(m, tau)
         return sign * h0, sign * h1, sign * h2, sign * h3, sign * h4, bound, rounding
-    h0, h1, h2, h3, h4, bound = evaluate_motion(m, slot, sign, tau)
+    h0, h1, h2, h3, h4, bound = evaluate_motion_signal(m, slot, sign, tau)
     return h0, h1, h2, h3, h4, bound, 4.0 * EPS * abs(h0)
 
 
-def largest_value(m, slot, sign, start, stop, highest):
+def largest_signal_value(m, slot, sign, start, stop, highest):
     """Return the larger of ``highest`` and a signal's largest value in ``start <= tau <= stop``."""
     tau = start
     reach = AHEAD * m[at.SPACING]

@@ -11,32 +11,37 @@ masses rest together. So neither a small motion in a wide gap nor one under a la
 digits.
 """
 
-from ..numerics.elementary import fraction, sincos_turns
+from ..numerics.elementary import fraction_of_turn, sincos_turns
 from ..numerics.first_root import INFINITE, clear_step_or_root
 from . import memory as at
-from .contact import first_nonzero_derivative, gap_acceleration
+from .contact import first_nonzero_force_derivative, gap_acceleration
 from .event_function import (
     begin_nodes,
-    derivative_bounds,
-    evaluate,
+    evaluate_event_function,
+    event_derivative_bounds,
     event_rounding,
-    is_constant,
+    is_event_function_constant,
     set_contact_event_function,
     set_flight_event_function,
-    set_node_values,
+    write_event_values,
 )
-from .excitation import cubic_drive, harmonic_drive, mirror, set_cubic_response
+from .excitation import (
+    cubic_drive_derivatives,
+    harmonic_drive_and_rate,
+    mirror_system,
+    set_cubic_response,
+)
 from .impact import (
     chattering_ends,
     common_velocity,
-    count_impact,
+    record_impact,
     restitution_coefficient,
     velocities_after_impact,
 )
 from .nodes import BLOCK, phasors_at
-from .response import displacement, set_free
-from .roots import clear_from_node, root_accuracy, take_step
-from .series import required_order, set_series, short_flight_duration, taylor_value
+from .response import displacement_and_velocity, set_free_part
+from .roots import move_clear_from_node, root_accuracy, take_step
+from .series import required_series_order, set_series, short_flight_duration, taylor_value
 
 BRIEF = 1e-6  # of a radian of the fastest change: four terms of a Taylor series are exact
 NARROWEST = 1e-6  # rounding of the gap, of the stroke: displacements of 1e8 strokes
@@ -58,7 +63,7 @@ def state_at(m, tau):
 
 def state_at_end(m):
     if m[at.MODE] == at.CONTACT and m[at.END] * m[at.RATE] < BRIEF:  # rarely
-        x, v = brief_contact(m, m[at.END])
+        x, v = state_after_brief_contact(m, m[at.END])
         return x, v, x, v
     if m[at.AT_END_NODE] == 0.0:
         return state_at(m, m[at.END])
@@ -66,11 +71,11 @@ def state_at_end(m):
     return state_from_phasors(m, m[at.END], m[p], m[p + 1], m[p + 2], m[p + 3], m[p + 4], m[p + 5])
 
 
-def brief_contact(m, tau):
+def state_after_brief_contact(m, tau):
     """Return the motion just after contact by Taylor: the closed form rounds it away."""
     twice, square = 2.0 * m[at.OSCILLATOR_3 + at.DAMPING], m[at.OSCILLATOR_3 + at.OMEGA_SQUARED]
-    drive, rate = harmonic_drive(m, at.OSCILLATOR_3, m[at.COSINE], m[at.SINE])
-    cubic = cubic_drive(m, at.OSCILLATOR_3, 0.0)
+    drive, rate = harmonic_drive_and_rate(m, at.OSCILLATOR_3, m[at.COSINE], m[at.SINE])
+    cubic = cubic_drive_derivatives(m, at.OSCILLATOR_3, 0.0)
     x, v = m[at.BEGIN], m[at.BEGIN + 1]
     x2 = (drive + cubic[0]) - (twice * v + square * x)
     x3 = (rate + cubic[1]) - (twice * x2 + square * v)
@@ -81,12 +86,16 @@ def brief_contact(m, tau):
 
 def state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
     if m[at.MODE] == at.FLIGHT:
-        x1, v1 = displacement(m, at.HARMONIC_1, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
-        x2, v2 = displacement(m, at.HARMONIC_2, at.CUBIC_B, tau, x_b, v_b, sine, cosine)
+        x1, v1 = displacement_and_velocity(
+            m, at.HARMONIC_1, at.CUBIC_A, tau, x_a, v_a, sine, cosine
+        )
+        x2, v2 = displacement_and_velocity(
+            m, at.HARMONIC_2, at.CUBIC_B, tau, x_b, v_b, sine, cosine
+        )
         if x2 < x1 and m[at.GAP_OFFSET] == 0.0:  # by rounding, at the very end of a flight
             x1 = x2 = common_position(m, x1, x2)
         return x1, v1, x2, v2
-    x3, v3 = displacement(m, at.HARMONIC_3, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
+    x3, v3 = displacement_and_velocity(m, at.HARMONIC_3, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
     return x3, v3, x3, v3
 
 
@@ -104,7 +113,7 @@ def gap_between(m, tau, x1, x2):  # inline
     return gap
 
 
-def from_outside(m, x1, v1, x2, v2, gap):
+def motion_as_importer_sees(m, x1, v1, x2, v2, gap):
     """Convert a motion to what an importer sees: mirrored back, inside wall and stroke."""
     if m[at.WALL] != 0.0:
         x2, v2 = 0.0, 0.0
@@ -114,13 +123,13 @@ def from_outside(m, x1, v1, x2, v2, gap):
     return x1, v1, x2, v2, gap
 
 
-def from_unloaded(m, x1, x2):  # inline
+def displacements_from_unloaded(m, x1, x2):  # inline
     if m[at.GAP_OFFSET] != 0.0 and not counts_from_unloaded_positions(m):  # rarely
         x1, x2 = x1 + m[at.REST_1], x2 + m[at.REST_2]
     return x1, x2
 
 
-def from_rest_together(m, x1, x2):
+def displacements_from_rest_together(m, x1, x2):
     if m[at.GAP_OFFSET] != 0.0 and counts_from_unloaded_positions(m):  # rarely
         x1, x2 = x1 - m[at.REST_1], x2 - m[at.REST_2]
     return x1, x2
@@ -138,7 +147,7 @@ def state_and_phase_at(m, tau):  # inline
     return x1, v1, x2, v2, cosine, sine
 
 
-def beside_wall(m, x):
+def touching_displacement(m, x):
     """Return the displacement of both masses where they touch: 0 for a wall."""
     return x if m[at.WALL] == 0.0 else 0.0
 
@@ -180,13 +189,13 @@ def move_origin_to_end(m):
         return
     m[at.ROTATIONS] = turns
     advance_origin(m, m[at.END])
-    m[at.TURN] = fraction(m[at.TURN] + m[at.ETA_TURNS] * m[at.END])
+    m[at.TURN] = fraction_of_turn(m[at.TURN] + m[at.ETA_TURNS] * m[at.END])
     m[at.COSINE] = m[at.AT_END + 4]
     m[at.SINE] = m[at.AT_END + 5]
 
 
 def set_phase(m, turns):
-    m[at.TURN] = fraction(turns)
+    m[at.TURN] = fraction_of_turn(turns)
     sine, cosine = sincos_turns(m[at.TURN])
     m[at.SINE] = sine
     m[at.COSINE] = cosine
@@ -195,36 +204,36 @@ def set_phase(m, turns):
 def begin_state(m, x1, v1, x2, v2, gap, lowest):
     """Begin the state that follows; ``lowest`` is 1 at a release, where f is known to vanish."""
     if m[at.MODE] == at.GLUED:  # rarely
-        begin_common(m, at.GLUED, x1, v1)
+        begin_contact_or_glued(m, at.GLUED, x1, v1)
         m[at.CLEAR] = INFINITE
         return
     if gap > 0.0:
         begin_flight(m, x1, v1, x2, v2, gap)
         return
-    x = common_position(m, x1, x2) if x2 < x1 else beside_wall(m, x1)
+    x = common_position(m, x1, x2) if x2 < x1 else touching_displacement(m, x1)
     begin_touching_state(m, x, v1, v2, lowest)
 
 
 def begin_touching_state(m, x, v1, v2, lowest):
     """Begin the state that follows a touch at ``x`` from where the masses rest together."""
     if v1 > v2:
-        v1, v2 = collide(m, x, v1, v2)
+        v1, v2 = record_impact_and_collide(m, x, v1, v2)
     if v2 > v1:  # usually
         begin_after_impact(m, x, v1, v2)
         return
-    order, value = first_nonzero_derivative(m, x, v1, lowest)
+    order, value = first_nonzero_force_derivative(m, x, v1, lowest)
     if value > 0.0:
-        x1, x2 = faces_together(m, x)
+        x1, x2 = displacements_of_touching_faces(m, x)
         begin_flight(m, x1, v1, x2, v1, 0.0)
         leave_boundary(m, order + 2, value)
         return
     if m[at.MODE] == at.FLIGHT:
         m[at.CONTACT_COUNT] += 1.0
-    begin_common(m, at.CONTACT, x, v1)
+    begin_contact_or_glued(m, at.CONTACT, x, v1)
     leave_boundary(m, order, -value)
 
 
-def collide(m, x, v1, v2):
+def record_impact_and_collide(m, x, v1, v2):
     """Count an impact and return the velocities after it, both the same where chattering ends."""
     closing = v1 - v2
     m[at.IMPACT_SIDE] = side_number(m)
@@ -232,7 +241,7 @@ def collide(m, x, v1, v2):
     time = m[at.START_TIME] + (m[at.ORIGIN] + m[at.ORIGIN_LOW]) / m[at.OMEGA]
     e = restitution_coefficient(m, closing)
     sticks = chattering_ends(m, e * closing, gap_acceleration_at_start(m, x, common))
-    count_impact(m, time, closing, e, sticks)
+    record_impact(m, time, closing, e, sticks)
     return (common, common) if sticks else velocities_after_impact(m, v1, v2, e)
 
 
@@ -240,14 +249,14 @@ def gap_acceleration_at_start(m, x, v):  # inline
     return gap_acceleration(m, x, v, m[at.COSINE], m[at.SINE], 0.0)
 
 
-def faces_together(m, x):
+def displacements_of_touching_faces(m, x):
     if m[at.GAP_OFFSET] != 0.0:  # rarely
         return x + m[at.REST_1], x + m[at.REST_2]
     return x, x
 
 
 def begin_flight(m, x1, v1, x2, v2, gap):
-    open_flight(m, x1, v1, x2, v2, gap)
+    set_flight(m, x1, v1, x2, v2, gap)
     slope = v2 - v1
     m[at.LEFT_VALUES] = gap
     m[at.LEFT_VALUES + 1] = slope
@@ -259,40 +268,40 @@ def begin_flight(m, x1, v1, x2, v2, gap):
     )
 
 
-def open_flight(m, x1, v1, x2, v2, gap):
+def set_flight(m, x1, v1, x2, v2, gap):
     """Begin a flight from unloaded positions; its event function is the gap."""
     m[at.MODE] = at.FLIGHT
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         set_cubic_response(m, at.OSCILLATOR_1, at.CUBIC_A)
         set_cubic_response(m, at.OSCILLATOR_2, at.CUBIC_B)
-    set_free(m, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, x1, v1, sine, cosine)
-    set_free(m, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, x2, v2, sine, cosine)
+    set_free_part(m, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, x1, v1, sine, cosine)
+    set_free_part(m, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, x2, v2, sine, cosine)
     set_flight_event_function(m)
     if m[at.LIMIT] < INFINITE and event_rounding(m, 0.0) > NARROWEST * m[at.LIMIT]:  # rarely
         m[at.NARROW] = 1.0
-    open_state(m, x1, v1, x2, v2, gap)
+    set_initial_conditions(m, x1, v1, x2, v2, gap)
     begin_nodes(m)
-    if is_constant(m):  # rarely
+    if is_event_function_constant(m):  # rarely
         m[at.CLEAR] = INFINITE
 
 
-def begin_common(m, mode, x, v):
+def begin_contact_or_glued(m, mode, x, v):
     """Begin permanent contact or the glued state; the event function is -f of (18)."""
     m[at.MODE] = mode
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         set_cubic_response(m, at.OSCILLATOR_3, at.CUBIC_A)
-    set_free(m, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, x, v, sine, cosine)
+    set_free_part(m, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, x, v, sine, cosine)
     set_contact_event_function(m)
-    open_state(m, x, v, x, v, 0.0)
+    set_initial_conditions(m, x, v, x, v, 0.0)
     begin_nodes(m)
-    set_node_values(m, at.LEFT_VALUES, at.LEFT, 0.0)
-    if is_constant(m):  # rarely
+    write_event_values(m, at.LEFT_VALUES, at.LEFT, 0.0)
+    if is_event_function_constant(m):  # rarely
         m[at.CLEAR] = INFINITE
 
 
-def open_state(m, x1, v1, x2, v2, gap):
+def set_initial_conditions(m, x1, v1, x2, v2, gap):
     """Set a new state's initial conditions; its end is not known yet."""
     m[at.SERIES] = 0.0
     m[at.AT_END_NODE] = 0.0
@@ -311,23 +320,23 @@ def begin_after_impact(m, x, v1, v2):
     slope = v2 - v1
     curvature = gap_acceleration_at_start(m, x, v1)
     curvature -= 2.0 * m[at.OSCILLATOR_2 + at.DAMPING] * slope
-    order = required_order(m, slope, curvature)
+    order = required_series_order(m, slope, curvature)
     if order > 4:
         set_series(m, x, v1, slope, order)
         duration = short_flight_duration(m, order)
         if duration > 0.0 and slope * duration < m[at.LIMIT]:
             m[at.MODE] = at.FLIGHT
-            open_state(m, x, v1, x, v2, 0.0)
+            set_initial_conditions(m, x, v1, x, v2, 0.0)
             m[at.SERIES] = order
             m[at.CLEAR] = duration
             m[at.END] = duration
             m[at.END_KIND] = at.END_EVENT
             return
-    x1, x2 = faces_together(m, x)
-    open_flight(m, x1, v1, x2, v2, 0.0)
+    x1, x2 = displacements_of_touching_faces(m, x)
+    set_flight(m, x1, v1, x2, v2, 0.0)
     if not skip_clear_start(m, slope, curvature):  # rarely
         set_series(m, x, v1, slope, 8)
-        certified_first_step(m, slope, curvature, m[at.SERIES_GAP + 6], m[at.SERIES_GAP + 8])
+        take_first_step(m, slope, curvature, m[at.SERIES_GAP + 6], m[at.SERIES_GAP + 8])
 
 
 def skip_clear_start(m, h1, h2):
@@ -335,12 +344,12 @@ def skip_clear_start(m, h1, h2):
     m[at.LEFT_VALUES] = 0.0
     m[at.LEFT_VALUES + 1] = h1
     m[at.LEFT_VALUES + 2] = h2
-    return clear_from_node(m)
+    return move_clear_from_node(m)
 
 
-def certified_first_step(m, h1, h2, h3, h4):
+def take_first_step(m, h1, h2, h3, h4):
     """Take one certified step from a start on the boundary, or find the root."""
-    _, _, _, _, _, bound = evaluate(m, 0.0)
+    _, _, _, _, _, bound = evaluate_event_function(m, 0.0)
     reach = m[at.RIGHT_AGE]
     step, found = clear_step_or_root(0.0, h1, h2, h3, h4, bound, 0.0, reach, root_accuracy(m, 0.0))
     take_step(m, 0.0, reach, step, found, (0.0, h1, h2, h3, h4, bound))
@@ -353,23 +362,23 @@ def leave_boundary(m, order, value):
     if order < 0:
         m[at.CLEAR] = INFINITE
         return
-    _, _, h2, h3, h4, _ = evaluate(m, 0.0)
+    _, _, h2, h3, h4, _ = evaluate_event_function(m, 0.0)
     if order <= 2:
         h1, h2 = (value, h2) if order == 1 else (0.0, value)
         if not skip_clear_start(m, h1, h2):
-            certified_first_step(m, h1, h2, h3, h4)
+            take_first_step(m, h1, h2, h3, h4)
         return
-    bound = derivative_bound(m, order + 1)
+    bound = event_derivative_bound(m, order + 1)
     # value s^k/k! - bound s^(k+1)/(k+1)! > 0 for s < (k+1) value/bound; half of it, to be clear of
     # zero
     step = 0.5 * (order + 1) * value / bound if bound > 0.0 else INFINITE
     step = min(step, m[at.RIGHT_AGE])
-    while m[at.MODE] == at.FLIGHT and grown_to(step, order, value) >= m[at.LIMIT]:  # rarely
+    while m[at.MODE] == at.FLIGHT and bound_after_step(step, order, value) >= m[at.LIMIT]:  # rarely
         step *= 0.5
     m[at.CLEAR] = step
 
 
-def grown_to(step, order, value):
+def bound_after_step(step, order, value):
     """Return a bound of a function after a step, its derivative adding half at most."""
     size = 1.5 * value
     for k in range(order):
@@ -377,9 +386,9 @@ def grown_to(step, order, value):
     return size
 
 
-def derivative_bound(m, order):
+def event_derivative_bound(m, order):
     """Return a bound of the event function's derivative of an order over the whole state."""
-    steady, a, b = derivative_bounds(m, order)
+    steady, a, b = event_derivative_bounds(m, order)
     return steady + a + b
 
 
@@ -390,18 +399,18 @@ def end_state(m):
     gap = gap_between(m, m[at.END], x1, x2)
     flight = m[at.MODE] == at.FLIGHT
     if m[at.END_KIND] == at.END_OTHER:  # rarely
-        mirror(m)
+        mirror_system(m)
         x1, v1, x2, v2 = -x1, -v1, -x2, -v2
     if has_died_away(m, x1, v1, x2, v2):  # rarely
         x1 = v1 = x2 = v2 = 0.0
         gap = max(m[at.GAP_OFFSET], 0.0)
     elif event and flight:  # usually
-        x1, x2 = from_rest_together(m, x1, x2)
+        x1, x2 = displacements_from_rest_together(m, x1, x2)
         move_origin_to_end(m)
-        begin_touching_state(m, beside_wall(m, common_position(m, x1, x2)), v1, v2, 0)
+        begin_touching_state(m, touching_displacement(m, common_position(m, x1, x2)), v1, v2, 0)
         return
     elif gap <= 0.0:
-        x1, x2 = from_rest_together(m, x1, x2)
+        x1, x2 = displacements_from_rest_together(m, x1, x2)
     move_origin_to_end(m)
     begin_state(m, x1, v1, x2, v2, gap, 1 if event and not flight else 0)
 

@@ -10,10 +10,10 @@ never on how it was reached.
 
 import math
 
-from ..numerics.elementary import sincos_turns, small_decay, small_rotation
+from ..numerics.elementary import cosine_and_sinc, sincos_turns, small_decay
 from . import memory as at
 from .response import fundamental_solutions
-from .secular import LONGEST_DRIVEN, growing_motion, grown_amplitude, initial_push
+from .secular import LONGEST_DRIVEN, grown_amplitude, initial_push, motion_of_grown_amplitude
 
 ANGLE = 1.25  # of the fastest oscillation over a spacing: half of it is for the polynomials
 STEEPEST = 0.65  # decay over half a spacing that small_decay serves
@@ -25,7 +25,7 @@ FASTEST_RATE = 1e36  # products of eight rates, as in the root finder, neither o
 FURTHEST = 4503599627370496.0  # 2**52 nodes, or turns: up to there each has its own number
 
 
-def set_grid(m):
+def set_node_grid(m):
     """Set spacing and rotations of a segment, unless they are those of before."""
     eta = m[at.ETA] if m[at.SHAKEN] != 0.0 else 0.0
     if m[at.SPACING] != 0.0 and eta == m[at.NODE_ETA]:
@@ -81,7 +81,7 @@ def rotation_over(m, b, t):
     return C + damped, S, -m[b + at.OMEGA_SQUARED] * S, C - damped
 
 
-def oscillator_a(m):
+def oscillator_of_part_a(m):
     """Return the first slot of the linear oscillator that free part A belongs to."""
     return at.OSCILLATOR_1 if m[at.MODE] == at.FLIGHT else at.OSCILLATOR_3
 
@@ -115,13 +115,13 @@ def start_nodes(m):
 
 
 def set_right_phasors(m, node):
-    x, v, x_b, v_b, cosine, sine = next_phasors(
+    x, v, x_b, v_b, cosine, sine = phasors_at_next_node(
         m, False, m[node], m[node + 1], m[node + 2], m[node + 3], m[node + 4], m[node + 5]
     )
-    put_phasors(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
+    write_phasors(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
 
 
-def put_phasors(m, slot, p0, p1, p2, p3, cosine, sine):
+def write_phasors(m, slot, p0, p1, p2, p3, cosine, sine):
     m[slot] = p0
     m[slot + 1] = p1
     m[slot + 2] = p2
@@ -135,10 +135,10 @@ def is_plain_flight(m):
     return m[at.MODE] == at.FLIGHT and m[at.SECULAR] == 0.0 and m[at.CUBIC_PRESENT] == 0.0
 
 
-def next_phasors(m, plain, x, v, x_b, v_b, cosine, sine):  # inline
-    if not plain and m[at.SECULAR] != 0.0:  # rarely
-        return next_free_parts(m, x, v, x_b, v_b, cosine, sine)
-    a = (at.OSCILLATOR_1 if plain else oscillator_a(m)) + at.STEP_ON
+def phasors_at_next_node(m, is_plain, x, v, x_b, v_b, cosine, sine):  # inline
+    if not is_plain and m[at.SECULAR] != 0.0:  # rarely
+        return free_parts_at_next_node(m, x, v, x_b, v_b, cosine, sine)
+    a = (at.OSCILLATOR_1 if is_plain else oscillator_of_part_a(m)) + at.STEP_ON
     b = at.OSCILLATOR_2 + at.STEP_ON
     return (
         x * m[a] + v * m[a + 2],
@@ -150,7 +150,7 @@ def next_phasors(m, plain, x, v, x_b, v_b, cosine, sine):  # inline
     )
 
 
-def starts_block(node):
+def is_block_start(node):
     return math.floor(node * (1.0 / BLOCK)) * BLOCK == node
 
 
@@ -160,16 +160,16 @@ def advance_interval(m):
     m[at.RIGHT_AGE] = (m[at.NODE] + 1.0) * m[at.SPACING]
     for i in range(6):
         m[at.LEFT + i] = m[at.RIGHT + i]
-    if starts_block(m[at.NODE] + 1.0):  # rarely
-        renew_right_phasors(m, m[at.NODE] + 1.0)
+    if is_block_start(m[at.NODE] + 1.0):  # rarely
+        set_right_phasors_from_closed_form(m, m[at.NODE] + 1.0)
     else:
         set_right_phasors(m, at.RIGHT)
 
 
-def renew_right_phasors(m, node):
+def set_right_phasors_from_closed_form(m, node):
     """Set the phasors of the right node to those of ``node`` from the closed form."""
     x, v, x_b, v_b, cosine, sine = phasors_from_closed_form(m, node * m[at.SPACING])
-    put_phasors(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
+    write_phasors(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
 
 
 def phasors_from_closed_form(m, age):
@@ -177,9 +177,11 @@ def phasors_from_closed_form(m, age):
     if m[at.NODE_ETA] != 0.0:  # usually
         sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * age)
     phases = m[at.COSINE], m[at.SINE], cosine, sine
-    x, v = free_part_driven_after(m, oscillator_a(m), m[at.FREE_A], m[at.FREE_A + 1], age, phases)
+    x, v = driven_free_part_after(
+        m, oscillator_of_part_a(m), m[at.FREE_A], m[at.FREE_A + 1], age, phases
+    )
     if m[at.MODE] == at.FLIGHT:
-        x_b, v_b = free_part_driven_after(
+        x_b, v_b = driven_free_part_after(
             m, at.OSCILLATOR_2, m[at.FREE_B], m[at.FREE_B + 1], age, phases
         )
     return x, v, x_b, v_b, cosine, sine
@@ -191,27 +193,27 @@ def free_part_after(m, b, x, v, t):
     return x * xx + v * xv, x * vx + v * vv
 
 
-def free_part_driven_after(m, b, x, v, t, phases):
+def driven_free_part_after(m, b, x, v, t, phases):
     """Return :func:`free_part_after`, driven near resonance by ``phases`` (before and after)."""
     if m[b + at.DRIVEN] == 0.0:  # usually
         return free_part_after(m, b, x, v, t)
     old_cosine, old_sine, cosine, sine = phases
     x, v = free_part_after(m, b, x, v - initial_push(m, b, old_cosine, old_sine), t)
     h_cos, h_sin, d_cos, d_sin = grown_amplitude(m, b, t)
-    x_driven, v_driven = growing_motion(m, h_cos, h_sin, d_cos, d_sin, cosine, sine)
+    x_driven, v_driven = motion_of_grown_amplitude(m, h_cos, h_sin, d_cos, d_sin, cosine, sine)
     return x + x_driven, v + v_driven
 
 
-def next_free_parts(m, x, v, x_b, v_b, old_cosine, old_sine):
+def free_parts_at_next_node(m, x, v, x_b, v_b, old_cosine, old_sine):
     cosine = old_cosine * m[at.NODE_COSINE] - old_sine * m[at.NODE_SINE]
     sine = old_sine * m[at.NODE_COSINE] + old_cosine * m[at.NODE_SINE]
     phases = old_cosine, old_sine, cosine, sine
-    x, v = next_free_part(m, oscillator_a(m), x, v, phases)
-    x_b, v_b = next_free_part(m, at.OSCILLATOR_2, x_b, v_b, phases)
+    x, v = free_part_at_next_node(m, oscillator_of_part_a(m), x, v, phases)
+    x_b, v_b = free_part_at_next_node(m, at.OSCILLATOR_2, x_b, v_b, phases)
     return x, v, x_b, v_b, cosine, sine
 
 
-def next_free_part(m, b, x, v, phases):
+def free_part_at_next_node(m, b, x, v, phases):
     """Return a free part at the next node, by the matrix of a spacing, driven if it grows."""
     step = b + at.STEP_ON
     if m[b + at.DRIVEN] == 0.0:  # usually
@@ -219,11 +221,13 @@ def next_free_part(m, b, x, v, phases):
     old_cosine, old_sine, cosine, sine = phases
     v -= initial_push(m, b, old_cosine, old_sine)
     g = b + at.STEP_GROWTH
-    x_driven, v_driven = growing_motion(m, m[g], m[g + 1], m[g + 2], m[g + 3], cosine, sine)
+    x_driven, v_driven = motion_of_grown_amplitude(
+        m, m[g], m[g + 1], m[g + 2], m[g + 3], cosine, sine
+    )
     return (x * m[step] + v * m[step + 2] + x_driven, x * m[step + 1] + v * m[step + 3] + v_driven)
 
 
-def seek_interval(m, tau):
+def move_to_interval_at(m, tau):
     node = math.floor(tau / m[at.SPACING]) * 1.0
     if node * m[at.SPACING] > tau:
         node -= 1.0
@@ -234,7 +238,7 @@ def seek_interval(m, tau):
         else:
             m[at.NODE] = block - 1.0
             m[at.RIGHT_AGE] = block * m[at.SPACING]
-            renew_right_phasors(m, block)
+            set_right_phasors_from_closed_form(m, block)
             advance_interval(m)
     while m[at.NODE] < node:
         advance_interval(m)
@@ -243,20 +247,20 @@ def seek_interval(m, tau):
 def phasors_at(m, tau):  # inline
     """Return x_a, x_b, v_a, v_b, cosine, sine at an age, from the nearer node."""
     if tau < m[at.LEFT_AGE] or tau > m[at.RIGHT_AGE]:  # rarely
-        seek_interval(m, tau)
+        move_to_interval_at(m, tau)
     node, t = at.LEFT, tau - m[at.LEFT_AGE]
     if t > m[at.HALF_SPACING]:
         node, t = at.RIGHT, tau - m[at.RIGHT_AGE]
     cosine, sine = m[node + 4], m[node + 5]
     if m[at.NODE_ETA] != 0.0:  # usually
         angle = m[at.NODE_ETA] * t
-        c, s = small_rotation(angle * angle)
+        c, s = cosine_and_sinc(angle * angle)
         s *= angle
         cosine, sine = cosine * c - sine * s, sine * c + cosine * s
     if m[at.STEEP] == 0.0 and m[at.SECULAR] == 0.0:  # usually
-        x_a, x_b, v_a, v_b = free_parts(m, node, t)
+        x_a, x_b, v_a, v_b = free_parts_near_node(m, node, t)
     else:
-        x_a, x_b, v_a, v_b = parts_by_functions(m, tau, cosine, sine)
+        x_a, x_b, v_a, v_b = free_parts_by_functions(m, tau, cosine, sine)
     return x_a, x_b, v_a, v_b, cosine, sine
 
 
@@ -265,7 +269,7 @@ def set_phasors_at_end(m, t):
     if t * m[at.RATE] > NEAR or m[at.SECULAR] != 0.0:  # rarely
         return
     p = at.POINT
-    x, v = free_part_by_series(m, oscillator_a(m), m[p], m[p + 2], t)
+    x, v = free_part_by_series(m, oscillator_of_part_a(m), m[p], m[p + 2], t)
     x_b, v_b = free_part_by_series(
         m, at.OSCILLATOR_2, m[p + 1], m[p + 3], t
     )  # zeros but in a flight
@@ -274,11 +278,11 @@ def set_phasors_at_end(m, t):
     c = 1.0 - square * (0.5 - square * (1.0 / 24.0))
     s = angle * (1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0)))
     cosine, sine = m[p + 4], m[p + 5]
-    put_phasors(m, at.AT_END, x, x_b, v, v_b, cosine * c - sine * s, sine * c + cosine * s)
+    write_phasors(m, at.AT_END, x, x_b, v, v_b, cosine * c - sine * s, sine * c + cosine * s)
     m[at.AT_END_NODE] = m[at.NODE] + 1.0
 
 
-def higher_derivatives(m, b, x, v):
+def free_part_higher_derivatives(m, b, x, v):
     twice, square = 2.0 * m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
     x2 = -(twice * v + square * x)
     x3 = -(twice * x2 + square * v)
@@ -288,7 +292,7 @@ def higher_derivatives(m, b, x, v):
 
 
 def free_part_by_series(m, b, x, v, t):
-    x2, x3, x4, x5, x6 = higher_derivatives(m, b, x, v)
+    x2, x3, x4, x5, x6 = free_part_higher_derivatives(m, b, x, v)
     half, t2 = 0.5 * t, t * t
     x += t * (
         v + half * x2 + t2 * ((x3 * (1.0 / 6.0) + t * x4 * (1.0 / 24.0)) + t2 * x5 * (1.0 / 120.0))
@@ -299,20 +303,20 @@ def free_part_by_series(m, b, x, v, t):
     return x, v
 
 
-def parts_by_functions(m, tau, cosine, sine):
+def free_parts_by_functions(m, tau, cosine, sine):
     """Return both free parts where one decays steeply or grows, by elementary functions."""
     t, p = tau - m[at.LEFT_AGE], at.LEFT
     phases = m[p + 4], m[p + 5], cosine, sine
-    x_a, v_a = free_part_driven_after(m, oscillator_a(m), m[p], m[p + 1], t, phases)
+    x_a, v_a = driven_free_part_after(m, oscillator_of_part_a(m), m[p], m[p + 1], t, phases)
     if m[at.MODE] != at.FLIGHT:
         return x_a, 0.0, v_a, 0.0
-    x_b, v_b = free_part_driven_after(m, at.OSCILLATOR_2, m[p + 2], m[p + 3], t, phases)
+    x_b, v_b = driven_free_part_after(m, at.OSCILLATOR_2, m[p + 2], m[p + 3], t, phases)
     return x_a, x_b, v_a, v_b
 
 
-def free_parts(m, node, t):  # inline
+def free_parts_near_node(m, node, t):  # inline
     """Return both free parts at a time ``t`` from a node, at most half a spacing."""
-    decay = small_decay(m[oscillator_a(m) + at.DAMPING] * t)
+    decay = small_decay(m[oscillator_of_part_a(m) + at.DAMPING] * t)
     if m[at.MODE] != at.FLIGHT:
         x_a, v_a = free_part_near_node(m, at.OSCILLATOR_3, node, t, decay)
         return x_a, 0.0, v_a, 0.0
@@ -327,7 +331,7 @@ def free_parts(m, node, t):  # inline
 def free_part_near_node(m, b, free, t, decay):  # inline
     """Return a free part a time ``t`` from its node, in which it decays by ``e^{-D t}``."""
     x, v = m[free], m[free + 1]
-    cosine, sine = small_rotation(m[b + at.NU_SQUARED] * t * t)
+    cosine, sine = cosine_and_sinc(m[b + at.NU_SQUARED] * t * t)
     C, S = decay * cosine, decay * sine * t
     damped = m[b + at.DAMPING] * S
     return (C + damped) * x + S * v, (C - damped) * v - m[b + at.OMEGA_SQUARED] * S * x

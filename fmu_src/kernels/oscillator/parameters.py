@@ -17,7 +17,7 @@ SAME = 1e-15
 ALIKE = 1e-4
 
 
-def derive(m):
+def derive_constants(m):
     """Compute the derived constants of ``m`` from its parameters."""
     omega = math.sqrt(m[at.K1] / m[at.M1])  # (2)
     mu = m[at.M2] / m[at.M1]
@@ -37,23 +37,23 @@ def derive(m):
     m[at.REDUCED_MASS] = m[at.M2] * m[at.SHARE]
     m[at.FORCE_V] = 2.0 * (damping_1 - damping_2)  # (18)
     m[at.FORCE_X] = 1.0 - omega_2_squared
-    set_oscillator(m, at.OSCILLATOR_1, damping_1, 1.0)
-    set_oscillator(m, at.OSCILLATOR_2, damping_2, omega_2_squared)
-    set_oscillator(m, at.OSCILLATOR_3, damping_3, (1.0 + kappa) / (1.0 + mu))
+    set_oscillator_constants(m, at.OSCILLATOR_1, damping_1, 1.0)
+    set_oscillator_constants(m, at.OSCILLATOR_2, damping_2, omega_2_squared)
+    set_oscillator_constants(m, at.OSCILLATOR_3, damping_3, (1.0 + kappa) / (1.0 + mu))
     m[at.SPACING] = 0.0  # the nodes are to be reset
     m[at.FASTEST] = max(1.0, math.sqrt(omega_2_squared))  # omega_3 lies between
     m[at.STICKING_TIME] = m[at.GAMMA] * (1.0 - m[at.E]) / m[at.FASTEST]
     if m[at.WALL] != 0.0:  # rarely
-        set_wall(m)
+        set_wall_constants(m)
     m[at.LIMIT] = m[at.STROKE] if m[at.STROKE] > 0.0 and m[at.BONDED] == 0.0 else INFINITE
-    set_side(m)
+    set_side_constants(m)
 
 
-def set_wall(m):
+def set_wall_constants(m):
     """Make mass 2 a rigid wall: tuned like mass 1, and infinitely heavy."""
     damping = m[at.OSCILLATOR_1 + at.DAMPING]
-    set_oscillator(m, at.OSCILLATOR_2, damping, 1.0)
-    set_oscillator(m, at.OSCILLATOR_3, damping, 1.0)
+    set_oscillator_constants(m, at.OSCILLATOR_2, damping, 1.0)
+    set_oscillator_constants(m, at.OSCILLATOR_3, damping, 1.0)
     m[at.FORCE_V] = 0.0
     m[at.FORCE_X] = 0.0
     m[at.SHARE] = 0.0
@@ -62,7 +62,7 @@ def set_wall(m):
     m[at.STICKING_TIME] = m[at.GAMMA] * (1.0 - m[at.E])
 
 
-def set_side(m):
+def set_side_constants(m):
     """Set what has another sign or size in the mirrored system; a wall is driven by nothing."""
     side, mu, kappa = m[at.SIDE], m[at.M2] / m[at.M1], m[at.K2] / m[at.K1]
     clearance = m[at.CLEARANCE] if m[at.BONDED] == 0.0 else 0.0
@@ -70,37 +70,37 @@ def set_side(m):
         clearance = m[at.LIMIT] - clearance
     m[at.GAP_OFFSET] = clearance
     one = side / m[at.K1]  # omega^2 m1 = k1
-    set_shares(m, at.BOX, side, 0.0, 0.0)
-    set_shares(m, at.OSCILLATOR_1, side, one, 0.0)
+    set_drive_shares(m, at.BOX, side, 0.0, 0.0)
+    set_drive_shares(m, at.OSCILLATOR_1, side, one, 0.0)
     if m[at.WALL] != 0.0:  # rarely
         m[at.REST_1] = clearance
         m[at.REST_2] = 0.0
         m[at.PRELOAD] = clearance
-        set_shares(m, at.OSCILLATOR_2, 0.0, 0.0, 0.0)
-        set_shares(m, at.OSCILLATOR_3, 0.0, 0.0, 0.0)
-        set_shares(m, at.GAP, -side, -one, 0.0)
+        set_drive_shares(m, at.OSCILLATOR_2, 0.0, 0.0, 0.0)
+        set_drive_shares(m, at.OSCILLATOR_3, 0.0, 0.0, 0.0)
+        set_drive_shares(m, at.GAP, -side, -one, 0.0)
         return
     m[at.REST_1] = clearance * (kappa / (1.0 + kappa))
     m[at.REST_2] = -clearance / (1.0 + kappa)
     square = m[at.OSCILLATOR_2 + at.OMEGA_SQUARED]
     m[at.PRELOAD] = clearance * square * ((1.0 + mu) / (1.0 + kappa))
     two, both = side / (m[at.K1] * mu), side / (m[at.K1] * (1.0 + mu))
-    set_shares(m, at.OSCILLATOR_2, side, 0.0, two)
-    set_shares(m, at.OSCILLATOR_3, side, both, both)
-    set_shares(m, at.GAP, 0.0, -one, two)
+    set_drive_shares(m, at.OSCILLATOR_2, side, 0.0, two)
+    set_drive_shares(m, at.OSCILLATOR_3, side, both, both)
+    set_drive_shares(m, at.GAP, 0.0, -one, two)
 
 
-def set_shares(m, b, box, force_1, force_2):
+def set_drive_shares(m, b, box, force_1, force_2):
     m[b + at.SHARES] = box
     m[b + at.SHARES + 1] = force_1
     m[b + at.SHARES + 2] = force_2
 
 
-def are_nearly_equal(m):
+def are_halves_nearly_equal(m):
     return abs(m[at.FORCE_V]) + abs(m[at.FORCE_X]) < ALIKE
 
 
-def set_oscillator(m, b, damping, omega_squared):
+def set_oscillator_constants(m, b, damping, omega_squared):
     """Set the constants of one linear oscillator: under-, critically and overdamped alike.
 
     The envelope (rate r, factor s) bounds both basis functions for all ``t >= 0``: ``|e^{-D t} cos

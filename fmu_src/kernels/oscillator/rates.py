@@ -5,8 +5,8 @@ where an input jumps, to what comes before the jump of an input and after the im
 """
 
 from . import memory as at
-from .excitation import drive_at
-from .outputs import accelerations, drives, last_written_point, unit_of_length
+from .excitation import drive_and_rate_at
+from .outputs import drives_of_masses, last_written_point, relative_accelerations, unit_of_length
 from .stepper import local_time
 
 
@@ -14,8 +14,8 @@ def differentiate(m, time):
     """Write the rates of change of the outputs into RATES; ``time`` is not used."""
     tau = local_time(m, m[at.TIME])
     point = last_written_point(m, tau)
-    first, second = drives(m, point)
-    a1, a2 = accelerations(m, point[0], first[0], second[0])
+    first, second = drives_of_masses(m, point)
+    a1, a2 = relative_accelerations(m, point[0], first[0], second[0])
     omega = m[at.OMEGA]
     v1, v2, v_rel = m[at.V1], m[at.V2], m[at.V_REL]
     unit = unit_of_length(m)
@@ -23,7 +23,7 @@ def differentiate(m, time):
     contact, box = 0.0, m[at.K1] * v1 + m[at.D1] * a1 + m[at.K2] * v2 + m[at.D2] * a2
     drive = 0.0
     if m[at.UNEQUAL] != 0.0:  # rarely
-        _, drive = drive_at(m, at.GAP, m[at.PHASE_COSINE], m[at.PHASE_SINE], tau)
+        _, drive = drive_and_rate_at(m, at.GAP, m[at.PHASE_COSINE], m[at.PHASE_SINE], tau)
     if m[at.WALL] != 0.0 and m[at.MODE] != at.FLIGHT:  # rarely
         box = -m[at.K1] * (m[at.SIDE] * omega * drive)
     if m[at.CONTACT_FORCE] > 0.0:

@@ -38,24 +38,24 @@ def fundamental_solutions(m, b, tau):
     return 0.5 * slow * (1.0 + fast), 0.5 * slow * (1.0 - fast) / nu, exp_decay(rate * tau)
 
 
-def cubic_value(m, response, tau):
+def cubic_value_and_rate(m, response, tau):
     """Return value and derivative of a cubic kept by value and derivatives at its start."""
     q1, q2, q3 = m[response + 1], m[response + 2], m[response + 3]
     value = m[response] + tau * (q1 + 0.5 * tau * (q2 + tau * q3 * (1.0 / 3.0)))
     return value, q1 + tau * (q2 + 0.5 * tau * q3)
 
 
-def displacement(m, harmonic, cubic, tau, x, v, sine, cosine):  # inline
+def displacement_and_velocity(m, harmonic, cubic, tau, x, v, sine, cosine):  # inline
     """Return displacement and velocity (m, m/tau) of an oscillator (10); x, v: free part."""
     h_cos, h_sin = m[harmonic], m[harmonic + 1]
     q, q_dot = 0.0, 0.0
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
-        q, q_dot = cubic_value(m, cubic, tau)
+        q, q_dot = cubic_value_and_rate(m, cubic, tau)
     forced = m[at.ETA] * (h_sin * cosine - h_cos * sine)
     return h_cos * cosine + h_sin * sine + q + x, forced + q_dot + v
 
 
-def set_free(m, harmonic, free, cubic, x, v, sine, cosine):
+def set_free_part(m, harmonic, free, cubic, x, v, sine, cosine):
     """Set the free part by the initial conditions (9): alpha_i and beta_i of (11)."""
     h_cos, h_sin = m[harmonic], m[harmonic + 1]
     q, q_dot = 0.0, 0.0

@@ -11,7 +11,7 @@ An amplitude stands as two slots, its parts by the cosine and by the sine of the
 
 from ..numerics.elementary import TWO_PI, exp_decay, sincos_turns
 from . import memory as at
-from .parameters import are_nearly_equal
+from .parameters import are_halves_nearly_equal
 
 # detuning^2 + (damping over critical)^2 below which the closed form has no four digits to spare
 NEAR_RESONANCE = 1e-8
@@ -28,24 +28,24 @@ def is_resonant(m, b):
     return (m[b + at.DRIVE] != 0.0 or m[b + at.DRIVE + 1] != 0.0) and near
 
 
-def set_secular(m):
+def set_growing_amplitudes(m):
     """Find the oscillators whose amplitudes grow, and set their growth; the nodes are set already.
 
     Of two oscillators that are nearly equal both do or none: so their gap keeps its digits.
     """
     if m[at.SECULAR] != 0.0:  # rarely
-        clear_secular(m)
+        clear_growing_amplitudes(m)
     near_1, near_2 = is_resonant(m, at.OSCILLATOR_1), is_resonant(m, at.OSCILLATOR_2)
-    both = (near_1 or near_2) and are_nearly_equal(m)
+    both = (near_1 or near_2) and are_halves_nearly_equal(m)
     if near_1 or both:
-        set_growth(m, at.OSCILLATOR_1)
+        set_amplitude_growth(m, at.OSCILLATOR_1)
     if near_2 or both:
-        set_growth(m, at.OSCILLATOR_2)
+        set_amplitude_growth(m, at.OSCILLATOR_2)
     if is_resonant(m, at.OSCILLATOR_3):
-        set_growth(m, at.OSCILLATOR_3)
+        set_amplitude_growth(m, at.OSCILLATOR_3)
 
 
-def clear_secular(m):
+def clear_growing_amplitudes(m):
     m[at.SECULAR] = 0.0
     for i in range(at.GROWTH_SIZE):
         m[at.OSCILLATOR_1 + at.DRIVEN + i] = 0.0
@@ -55,7 +55,7 @@ def clear_secular(m):
         m[at.EVENT_DRIVE + i] = 0.0
 
 
-def set_growth(m, b):
+def set_amplitude_growth(m, b):
     m[at.SECULAR] = 1.0
     m[b + at.DRIVEN] = 1.0
     eta, damping, nu = m[at.ETA], m[b + at.DAMPING], m[b + at.NU]
@@ -110,12 +110,12 @@ def initial_push(m, b, cosine, sine):
     return m[b + at.PUSH] * cosine + m[b + at.PUSH + 1] * sine
 
 
-def growing_motion(m, h_cos, h_sin, d_cos, d_sin, cosine, sine):
+def motion_of_grown_amplitude(m, h_cos, h_sin, d_cos, d_sin, cosine, sine):
     forced = m[at.ETA] * (h_sin * cosine - h_cos * sine)
     return h_cos * cosine + h_sin * sine, forced + (d_cos * cosine + d_sin * sine)
 
 
-def forced_derivative(m, b, order):
+def forced_derivative_amplitude(m, b, order):
     """Return what the forcing adds to a derivative of the displacement, by cosine and by sine."""
     if order < 2 or m[b + at.DRIVEN] == 0.0:
         return 0.0, 0.0
@@ -134,12 +134,12 @@ def set_event_drive(m):
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
     for k in range(1, at.EVENT_ORDERS + 1):
         if flight:
-            low_cosine, low_sine = forced_derivative(m, at.OSCILLATOR_1, k)
-            cosine, sine = forced_derivative(m, at.OSCILLATOR_2, k)
+            low_cosine, low_sine = forced_derivative_amplitude(m, at.OSCILLATOR_1, k)
+            cosine, sine = forced_derivative_amplitude(m, at.OSCILLATOR_2, k)
             cosine, sine = cosine - low_cosine, sine - low_sine
         else:
-            low_cosine, low_sine = forced_derivative(m, at.OSCILLATOR_3, k)
-            cosine, sine = forced_derivative(m, at.OSCILLATOR_3, k + 1)
+            low_cosine, low_sine = forced_derivative_amplitude(m, at.OSCILLATOR_3, k)
+            cosine, sine = forced_derivative_amplitude(m, at.OSCILLATOR_3, k + 1)
             cosine, sine = p * cosine + q * low_cosine, p * sine + q * low_sine
         m[at.EVENT_DRIVE + 2 * k - 2] = cosine
         m[at.EVENT_DRIVE + 2 * k - 1] = sine
@@ -155,7 +155,7 @@ def event_drive_bound(m, order):
     return abs(m[i]) + abs(m[i + 1])
 
 
-def driven_bound(m, b, order, time):
+def driven_derivative_bound(m, b, order, time):
     """Return a bound of what the forcing adds to a derivative of the displacement for a ``time``
     from now on.
 
@@ -180,7 +180,7 @@ def driven_bound(m, b, order, time):
 def driven_event_bound(m, order, time):
     """Return a bound of what forcing adds to the event function's derivative over a time."""
     if m[at.MODE] == at.FLIGHT:
-        low = driven_bound(m, at.OSCILLATOR_1, order, time)
-        return low + driven_bound(m, at.OSCILLATOR_2, order, time)
-    high = abs(m[at.FORCE_V]) * driven_bound(m, at.OSCILLATOR_3, order + 1, time)
-    return high + abs(m[at.FORCE_X]) * driven_bound(m, at.OSCILLATOR_3, order, time)
+        low = driven_derivative_bound(m, at.OSCILLATOR_1, order, time)
+        return low + driven_derivative_bound(m, at.OSCILLATOR_2, order, time)
+    high = abs(m[at.FORCE_V]) * driven_derivative_bound(m, at.OSCILLATOR_3, order + 1, time)
+    return high + abs(m[at.FORCE_X]) * driven_derivative_bound(m, at.OSCILLATOR_3, order, time)

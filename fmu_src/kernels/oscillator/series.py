@@ -8,7 +8,7 @@ where the masses rest together: with a clearance, the preload is a constant in b
 """
 
 from . import memory as at
-from .excitation import cubic_drive, harmonic_drive
+from .excitation import cubic_drive_derivatives, harmonic_drive_and_rate
 
 # of a radian of the fastest change: from here on twelve terms leave more than the rounding
 SHORT = 0.2
@@ -16,7 +16,7 @@ SHORTER = 0.02  # and eight terms
 ENOUGH = 2e-8  # relative: the next step of Newton's method would be a small part of its square
 
 
-def required_order(m, slope, curvature):
+def required_series_order(m, slope, curvature):
     """Return the order of a flight's series from gap velocity and acceleration; 4: not short."""
     if curvature >= 0.0:
         return 4
@@ -26,7 +26,7 @@ def required_order(m, slope, curvature):
     return 8 if angle <= SHORTER * -curvature else at.SERIES_LONGEST
 
 
-def fifth_bound(m):
+def fifth_derivative_bound(m):
     """Return a bound of the gap's fifth derivative up to 0.3 of the fastest rate's radian after the
     start.
 
@@ -40,13 +40,13 @@ def fifth_bound(m):
     b = at.OSCILLATOR_1 + at.DRIVE
     forcing = abs(m[b]) + abs(m[b + 1]) + abs(m[at.REST_1])
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
-        cubic_0, cubic_1, cubic_2, cubic_3 = cubic_drive(m, at.OSCILLATOR_1, 0.0)
+        cubic_0, cubic_1, cubic_2, cubic_3 = cubic_drive_derivatives(m, at.OSCILLATOR_1, 0.0)
         growth = abs(cubic_1) + part * (abs(cubic_2) + part * abs(cubic_3))
         forcing += 1.35 * (abs(cubic_0) + part * growth)
     size = abs(m[at.SERIES_X]) + part * (abs(m[at.SERIES_X + 2]) + part * forcing)
     drive = (abs(m[at.FORCE_V]) * rate + abs(m[at.FORCE_X])) * size + abs(m[at.PRELOAD])
     if m[at.UNEQUAL] != 0.0:  # rarely
-        gap_0, gap_1, gap_2, gap_3 = cubic_drive(m, at.GAP, 0.0)
+        gap_0, gap_1, gap_2, gap_3 = cubic_drive_derivatives(m, at.GAP, 0.0)
         drive += abs(m[at.GAP + at.DRIVE]) + abs(m[at.GAP + at.DRIVE + 1])
         drive += abs(gap_0) + part * (abs(gap_1) + part * (abs(gap_2) + part * abs(gap_3)))
     square = rate * rate
@@ -60,24 +60,24 @@ def set_series(m, x, v, slope, order):
     m[at.SERIES_GAP] = 0.0
     m[at.SERIES_GAP + 2] = slope
     if m[at.UNEQUAL] == 0.0:  # usually
-        set_terms(m, order, False)
+        set_higher_derivatives(m, order, False)
     else:
-        set_terms(m, order, True)
+        set_higher_derivatives(m, order, True)
 
 
-def set_terms(m, order, unequal):  # inline
+def set_higher_derivatives(m, order, unequal):  # inline
     """Set the derivatives from the second on; ``unequal`` is a constant where this is called."""
     square = -m[at.ETA] * m[at.ETA]
-    drive, drive_next = harmonic_drive(m, at.OSCILLATOR_1, m[at.COSINE], m[at.SINE])
+    drive, drive_next = harmonic_drive_and_rate(m, at.OSCILLATOR_1, m[at.COSINE], m[at.SINE])
     c0, c1, c2, c3 = 0.0, 0.0, 0.0, 0.0
     apart, apart_next, g0, g1, g2, g3 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
-        c0, c1, c2, c3 = cubic_drive(m, at.OSCILLATOR_1, 0.0)
+        c0, c1, c2, c3 = cubic_drive_derivatives(m, at.OSCILLATOR_1, 0.0)
     if unequal:
-        apart, apart_next = harmonic_drive(m, at.GAP, m[at.COSINE], m[at.SINE])
-        g0, g1, g2, g3 = cubic_drive(m, at.GAP, 0.0)
+        apart, apart_next = harmonic_drive_and_rate(m, at.GAP, m[at.COSINE], m[at.SINE])
+        g0, g1, g2, g3 = cubic_drive_derivatives(m, at.GAP, 0.0)
     for k in range(7):
-        set_derivatives(m, k + 2, drive + c0)
+        set_derivatives_of_order(m, k + 2, drive + c0)
         if unequal:
             m[at.SERIES_GAP + 2 * k + 4] += apart + g0
             apart, apart_next = apart_next, square * apart
@@ -89,7 +89,7 @@ def set_terms(m, order, unequal):  # inline
         c0, c1, c2, c3 = c1, c2, c3, 0.0
     if order > 8:
         for k in range(7, 11):
-            set_derivatives(m, k + 2, drive)
+            set_derivatives_of_order(m, k + 2, drive)
             if unequal:
                 m[at.SERIES_GAP + 2 * k + 4] += apart
                 apart, apart_next = apart_next, square * apart
@@ -99,7 +99,7 @@ def set_terms(m, order, unequal):  # inline
             m[at.SERIES_GAP + 2 * k] = 0.0
 
 
-def set_derivatives(m, k, drive):
+def set_derivatives_of_order(m, k, drive):
     """Set the derivatives of order k from the two before and the forcing's of order k - 2."""
     one, two = at.OSCILLATOR_1, at.OSCILLATOR_2
     i = 2 * k
@@ -118,7 +118,7 @@ def short_flight_duration(m, order):
     part = 1.0 / c2
     root = -c1 * part
     longest = 1.5 * root
-    bound = fifth_bound(m)
+    bound = fifth_derivative_bound(m)
     m[at.SERIES_BOUND] = bound
     bent = (12.0 * c4 if c4 > 0.0 else 0.0) + bound * longest * (1.0 / 6.0)
     if 2.0 * c2 + longest * ((6.0 * c3 if c3 > 0.0 else 0.0) + longest * bent) >= 0.0:
@@ -178,7 +178,7 @@ def taylor_value(m, first, tau):
     return value
 
 
-def gap_derivatives(m, tau):
+def gap_and_derivatives(m, tau):
     h0, h1, h2, h3, h4 = 0.0, 0.0, 0.0, 0.0, 0.0
     power = 1.0  # tau^k/k!
     for k in range(int(m[at.SERIES]) + 1):

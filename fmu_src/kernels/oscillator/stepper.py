@@ -6,19 +6,25 @@ one flat memory.
 
 from ..numerics.elementary import TWO_PI
 from . import memory as at
-from .event_function import evaluate
-from .excitation import begin_segment, drive_at, inputs_changed, mirror, set_excitation
-from .hermite import has_summit
+from .event_function import evaluate_event_function
+from .excitation import (
+    begin_segment,
+    drive_and_rate_at,
+    have_inputs_changed,
+    mirror_system,
+    set_excitation,
+)
+from .hermite import may_have_summit
 from .maximum import record_peaks, walk_with_largest_gap
 from .motion import (
-    begin_common,
+    begin_contact_or_glued,
     begin_flight,
     begin_state,
+    displacements_from_rest_together,
+    displacements_from_unloaded,
     end_state,
-    from_outside,
-    from_rest_together,
-    from_unloaded,
     gap_between,
+    motion_as_importer_sees,
     move_origin,
     set_phase,
     state_at,
@@ -26,17 +32,17 @@ from .motion import (
 from .nodes import is_countable, is_too_fast
 from .outputs import (
     SHORT,
-    finite_check_sum,
-    impulse,
+    impulse_and_moment,
     last_written_point,
     outputs_at,
-    point_of,
-    short_impulse,
+    point_from_outputs,
+    short_impulse_and_moment,
+    sum_of_outputs,
     write_outputs,
 )
-from .parameters import derive
-from .roots import value_on_decided_side, walk
-from .secular import clear_secular, set_event_drive
+from .parameters import derive_constants
+from .roots import value_on_decided_side, walk_to_event
+from .secular import clear_growing_amplitudes, set_event_drive
 
 TOUCHING = 4.440892098500626e-16  # 2**-51, relative: a gap at the start that is only rounding
 WORK_BASE = 100000.0  # evaluations of the event function a step may take whatever its length,
@@ -47,7 +53,7 @@ WORK_MOST = 1e7  # and at the very most: a second or two, compiled; EVALUATION_L
 def initialize(m, time):
     """Begin at ``time`` (s) from parameters, start values and inputs; return a code of memory."""
     m[at.SIDE] = 1.0
-    derive(m)
+    derive_constants(m)
     m[at.START_TIME] = time
     m[at.TIME] = time
     for i in range(at.ORIGIN, at.START_TIME):
@@ -63,8 +69,8 @@ def initialize(m, time):
     m[at.BOX_IMPULSE_MOMENT] = 0.0
     m[at.STICKING_ENERGY] = 0.0
     m[at.IMPACT_SIDE] = 0.0
-    x1, x2, gap = starting_point(m)
-    code = check_start(m, gap)
+    x1, x2, gap = start_displacements_and_gap(m)
+    code = start_problem_code(m, gap)
     if code != at.OK:
         return code
     set_phase(m, m[at.PHASE_START] / TWO_PI)
@@ -85,10 +91,11 @@ def initialize(m, time):
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
     if m[at.PEAKS_ON] != 0.0:
         record_peaks(m, 0.0, 0.0)
-    return check_finite(finite_check_sum(seen) + sum_of_peaks(m))
+    return check_finite(sum_of_outputs(seen) + sum_of_peaks(m))
 
 
-def check_start(m, gap):
+def start_problem_code(m, gap):
+    """Return OK, or the code of what contradicts itself in the start values."""
     if gap < 0.0:
         m[at.REPORT] = m[at.X1_START] - m[at.GAP_OFFSET]
         return at.START_OVERLAP if m[at.GAP_OFFSET] <= 0.0 else at.START_BEYOND_CLEARANCE
@@ -114,7 +121,7 @@ def begin_first_state(m, x1, x2, gap):
     """Begin the first state, mirrored at the outer end of the play."""
     v1, v2 = m[at.V1_START] / m[at.OMEGA], m[at.V2_START] / m[at.OMEGA]
     if gap + start_rounding(m) >= m[at.LIMIT]:  # rarely
-        mirror(m)
+        mirror_system(m)
         x1 = x2 = -x1 - m[at.REST_1]
         v1, v2, gap = -v1, -v2, 0.0
     begin_state(m, x1, v1, x2, v2, gap, 0)
@@ -124,8 +131,8 @@ def restore(m, time):
     """Recompute what parameters and inputs decide in a saved memory: then every step of it ends."""
     m[at.START_TIME] = time
     m[at.SIDE] = 1.0 if m[at.SIDE] >= 0.0 else -1.0
-    derive(m)
-    clear_secular(m)
+    derive_constants(m)
+    clear_growing_amplitudes(m)
     set_excitation(m)
     if m[at.SECULAR] != 0.0:  # rarely
         set_event_drive(m)
@@ -150,7 +157,7 @@ def sum_of_peaks(m):
     return (m[at.X1_MAX] + m[at.X2_MAX]) + (m[at.A1_MAX] + m[at.A2_MAX])
 
 
-def starting_point(m):
+def start_displacements_and_gap(m):
     """Return the displacements from the position at rest, and the gap; below 0: overlap."""
     x1, x2, clearance = m[at.X1_START], m[at.X2_START], m[at.GAP_OFFSET]
     gap = x2 - x1
@@ -179,8 +186,8 @@ def advance(m, time):
     allowed = min(WORK_MOST, WORK_BASE + WORK_RATE * fastest * m[at.OMEGA] * abs(h) / m[at.GAMMA])
     m[at.WORK_LIMIT] = min(allowed, m[at.EVALUATION_LIMIT])
     now = local_time(m, before)
-    if inputs_changed(m):
-        renew_segment(m, now)
+    if have_inputs_changed(m):
+        begin_segment_and_state(m, now)
         now = 0.0
         m[at.PHASE_COSINE] = m[at.COSINE]
         m[at.PHASE_SINE] = m[at.SINE]
@@ -206,14 +213,14 @@ def advance(m, time):
     if m[at.STOPPED] != 0.0:  # rarely
         time = min(time, m[at.IMPACT_TIME])
     same = m[at.MODE] == mode and m[at.IMPACT_COUNT] == impacts
-    return write_point(m, time, tau, left, m[at.X_REL_MAX], same)
+    return write_outputs_if_finite(m, time, tau, left, m[at.X_REL_MAX], same)
 
 
 def coast(m, time):
     """Advance where the present state lasts; with another code nothing has changed."""
     tau = local_time(m, time)
     quick = m[at.SAMPLE_COUNT] == 0.0 and m[at.PEAKS_ON] == 0.0
-    if not lasts_beyond(m, tau) or not quick or inputs_changed(m):
+    if not does_state_last_beyond(m, tau) or not quick or have_inputs_changed(m):
         return at.UNFINISHED
     if not is_countable(m, tau):  # rarely
         return at.UNFINISHED
@@ -225,10 +232,10 @@ def coast(m, time):
             return at.UNFINISHED
     m[at.WORK] = 0.0
     left = last_written_point(m, now)
-    return write_point(m, time, tau, left, highest, True)
+    return write_outputs_if_finite(m, time, tau, left, highest, True)
 
 
-def lasts_beyond(m, tau):
+def does_state_last_beyond(m, tau):
     return (m[at.CLEAR] if m[at.END_KIND] == at.END_OPEN else m[at.END]) > tau
 
 
@@ -237,25 +244,25 @@ def is_without_summit(m, start, stop):
     if m[at.MODE] != at.FLIGHT:
         return True
     within = m[at.LEFT_AGE] < start and stop < m[at.RIGHT_AGE] and m[at.CLEAR] <= m[at.RIGHT_AGE]
-    return within and m[at.SERIES] == 0.0 and not has_summit(m, start, stop)
+    return within and m[at.SERIES] == 0.0 and not may_have_summit(m, start, stop)
 
 
-def write_point(m, time, tau, left, highest, same):  # inline
-    """Write all outputs at ``time``, age ``tau``, if finite; ``same``: no event since ``left``."""
+def write_outputs_if_finite(m, time, tau, start, highest, is_same_state):  # inline
+    """Write all outputs at ``time``, age ``tau``, if they are finite; return a code of memory."""
     h = time - m[at.TIME]
-    seen = outputs_at(m, tau)
-    reached = point_of(m, seen, tau)
+    outputs = outputs_at(m, tau)
+    end = point_from_outputs(m, outputs, tau)
     # no momentum at a wall: nothing cancels
     at_wall = m[at.WALL] != 0.0 and m[at.MODE] != at.FLIGHT
-    if same and not at_wall and h * m[at.OMEGA] * m[at.RATE] < SHORT:
-        force, moment = short_impulse(m, h, left, reached)
+    if is_same_state and not at_wall and h * m[at.OMEGA] * m[at.RATE] < SHORT:
+        force, moment = short_impulse_and_moment(m, h, start, end)
     else:
-        force, moment = impulse(m, h, left, reached)
-    gap = seen[0][4]
+        force, moment = impulse_and_moment(m, h, start, end)
+    gap = outputs[0][4]
     if m[at.X_REL_MAX_ON] != 0.0 and gap > highest:
         highest = gap
     last = m[at.IMPACT_TIME] + m[at.IMPACT_VELOCITY] + m[at.IMPACT_ENERGY]
-    sums = finite_check_sum(seen) + (force + moment) + (highest + last)
+    sums = sum_of_outputs(outputs) + (force + moment) + (highest + last)
     if m[at.PEAKS_ON] != 0.0:  # rarely
         sums += sum_of_peaks(m)
     code = check_finite(sums)
@@ -264,7 +271,7 @@ def write_point(m, time, tau, left, highest, same):  # inline
         m[at.STEP] = h
         for i in range(3):
             m[at.CUBIC_SET + i] = 0.0
-        write_outputs(m, seen)
+        write_outputs(m, outputs)
         m[at.BOX_IMPULSE] = force
         m[at.BOX_IMPULSE_MOMENT] = moment
         m[at.X_REL_MAX] = highest
@@ -274,11 +281,12 @@ def write_point(m, time, tau, left, highest, same):  # inline
     return code
 
 
-def check_finite(sum_of_outputs):
-    return at.OK if sum_of_outputs - sum_of_outputs == 0.0 else at.NOT_FINITE
+def check_finite(total):
+    """Return OK, or NOT_FINITE if a sum of outputs is no finite number."""
+    return at.OK if total - total == 0.0 else at.NOT_FINITE
 
 
-def renew_segment(m, now):
+def begin_segment_and_state(m, now):
     """Begin a segment with the present inputs; whether contact stays is decided again."""
     x1, v1, x2, v2 = state_at(m, now)
     gap = gap_between(m, now, x1, x2)
@@ -289,27 +297,27 @@ def renew_segment(m, now):
     if gap <= 0.0 and gap_drive(m) != before:  # rarely
         goes_on = False
     if gap > 0.0 or (goes_on and m[at.MODE] == at.FLIGHT):
-        x1, x2 = from_unloaded(m, x1, x2)
+        x1, x2 = displacements_from_unloaded(m, x1, x2)
     else:
-        x1, x2 = from_rest_together(m, x1, x2)
+        x1, x2 = displacements_from_rest_together(m, x1, x2)
     if not goes_on:
         begin_state(m, x1, v1, x2, v2, gap, 0)
     elif m[at.MODE] == at.FLIGHT:
         begin_flight(m, x1, v1, x2, v2, gap)
     else:
-        begin_common(m, at.CONTACT, x1, v1)
+        begin_contact_or_glued(m, at.CONTACT, x1, v1)
 
 
 def gap_drive(m):
     drive = 0.0
     if m[at.UNEQUAL] != 0.0:  # rarely
-        drive, _ = drive_at(m, at.GAP, m[at.COSINE], m[at.SINE], 0.0)
+        drive, _ = drive_and_rate_at(m, at.GAP, m[at.COSINE], m[at.SINE], 0.0)
     return drive
 
 
 def is_inside_state(m, tau):
     """Return whether the event function is not crossed: positive, or zero but for rounding."""
-    h0, h1, _, _, _, _ = evaluate(m, tau)
+    h0, h1, _, _, _, _ = evaluate_event_function(m, tau)
     return h0 > 0.0 or value_on_decided_side(m, tau, h0, h1) > 0.0
 
 
@@ -322,16 +330,16 @@ def run_samples(m, start, time, age):
             age = run_to(m, until, age)
         if m[at.WORK] >= m[at.WORK_LIMIT]:  # rarely
             return age
-        keep_sample(m, i, age)
+        write_sample(m, i, age)
     return age if count > 0 else run_to(m, time, age)
 
 
-def keep_sample(m, i, tau):
+def write_sample(m, i, tau):
     x1, v1, x2, v2 = state_at(m, tau)
     gap = gap_between(m, tau, x1, x2)
-    x1, x2 = from_unloaded(m, x1, x2)
+    x1, x2 = displacements_from_unloaded(m, x1, x2)
     if m[at.UNEQUAL] != 0.0:  # rarely
-        x1, v1, x2, v2, gap = from_outside(m, x1, v1, x2, v2, gap)
+        x1, v1, x2, v2, gap = motion_as_importer_sees(m, x1, v1, x2, v2, gap)
     m[at.X1_SAMPLE + i] = x1
     m[at.X2_SAMPLE + i] = x2
     m[at.V1_SAMPLE + i] = m[at.OMEGA] * v1
@@ -348,7 +356,7 @@ def run_to(m, time, age):
         if watching and m[at.MODE] == at.FLIGHT:
             walk_with_largest_gap(m, age, tau)
         else:
-            walk(m, tau)
+            walk_to_event(m, tau)
         if m[at.PEAKS_ON] != 0.0:
             record_peaks(m, age, tau if tau < m[at.END] else m[at.END])
         if m[at.END_KIND] == at.END_OPEN or m[at.END] > tau or m[at.WORK] >= m[at.WORK_LIMIT]:

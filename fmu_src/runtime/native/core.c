@@ -10,7 +10,7 @@
 
 
 /* The shortest decimal that reads back as the same number. */
-static void number(char *text, double value) {
+static void write_number(char *text, double value) {
     if (isnan(value)) { strcpy(text, "nan"); return; }
     if (isinf(value)) { strcpy(text, value > 0 ? "inf" : "-inf"); return; }
     for (int digits = 15; digits <= 17; digits++) {
@@ -26,12 +26,12 @@ static void append(char *text, const char *part) {
 
 static void append_number(char *text, double value) {
     char digits[40];
-    number(digits, value);
+    write_number(digits, value);
     append(text, digits);
 }
 
 /* The whole number next to a value. */
-static void append_whole(char *text, double value) {
+static void append_whole_number(char *text, double value) {
     char digits[320];  /* the largest double has 309 */
     if (!isfinite(value)) { append_number(text, value); return; }
     snprintf(digits, sizeof digits, "%.0f", value);
@@ -46,12 +46,12 @@ static bool is_whole(double value) {
 /* A value as people write it: Integers without a fraction, Booleans as words. */
 static void append_value(char *text, const Variable *variable, double value) {
     if (variable->type == BOOLEAN && (value == 0 || value == 1)) append(text, value != 0 ? "true" : "false");
-    else if (variable->type == INTEGER && is_whole(value)) append_whole(text, value);
+    else if (variable->type == INTEGER && is_whole(value)) append_whole_number(text, value);
     else append_number(text, value);
 }
 
 /* Report why a call is not done. */
-static Status complain(Instance *instance, Status status, const char *call, const char *reason) {
+static Status report_reason(Instance *instance, Status status, const char *call, const char *reason) {
     char text[TEXT] = "";
     append(text, call);
     append(text, ": ");
@@ -61,11 +61,11 @@ static Status complain(Instance *instance, Status status, const char *call, cons
 }
 
 Status refuse(Instance *instance, const char *call, const char *reason) {
-    return complain(instance, FAILED, call, reason);
+    return report_reason(instance, FAILED, call, reason);
 }
 
 /* Refuse with a message in which %g stands for the next of the numbers, %v for that as the variable's value, %s for the next of the texts. */
-static Status refuse_with(Instance *instance, const char *call, const char *format, const Variable *variable, const double *numbers,
+static Status refuse_with_values(Instance *instance, const char *call, const char *format, const Variable *variable, const double *numbers,
                           const char *const *texts) {
     char text[TEXT] = "";
     for (; *format; format++) {
@@ -80,7 +80,7 @@ static Status refuse_with(Instance *instance, const char *call, const char *form
 #define NUMBERS(...) (const double[]){__VA_ARGS__}
 #define TEXTS(...) (const char *const[]){__VA_ARGS__}
 
-bool in_phase(Instance *instance, const char *call, int phases) {
+bool require_phase(Instance *instance, const char *call, int phases) {
     static const char *const names[] = {"instantiated", "initialization mode", "step mode", "event mode", "stopped after an error", "terminated"};
     if (instance->state.phase & phases) return true;
     char text[TEXT] = "called when ";
@@ -92,25 +92,25 @@ bool in_phase(Instance *instance, const char *call, int phases) {
     return false;
 }
 
-bool missing(Instance *instance, const char *call, size_t count, const void *a, const void *b) {
+bool refuse_missing_array(Instance *instance, const char *call, size_t count, const void *a, const void *b) {
     if (count == 0 || (a && b)) return false;
     refuse(instance, call, "a null pointer for an array that is not empty");
     return true;
 }
 
-static char *copy(const char *text) {
+static char *copy_text(const char *text) {
     size_t size = strlen(text) + 1;
     char *made = malloc(size);
     if (made) memcpy(made, text, size);
     return made;
 }
 
-Status check_categories(Instance *instance, const char *call, size_t count, const char *const categories[]) {
-    if (missing(instance, call, count, categories, categories)) return FAILED;
+Status require_known_categories(Instance *instance, const char *call, size_t count, const char *const categories[]) {
+    if (refuse_missing_array(instance, call, count, categories, categories)) return FAILED;
     for (size_t i = 0; i < count; i++) {
         bool known = false;
         for (unsigned k = 0; categories[i] && k < CATEGORY_COUNT; k++) known = known || strcmp(categories[i], CATEGORIES[k]) == 0;
-        if (!known) return refuse_with(instance, call, "log category %s: expected " CATEGORY_NAMES, NULL, NULL, TEXTS(categories[i] ? categories[i] : "NULL"));
+        if (!known) return refuse_with_values(instance, call, "log category %s: expected " CATEGORY_NAMES, NULL, NULL, TEXTS(categories[i] ? categories[i] : "NULL"));
     }
     return OK;
 }
@@ -121,10 +121,10 @@ Instance *instance_new(const char *call, const char *name, const char *token_nam
     instance->report = report;
     instance->environment = environment;
     instance->logger = logger;
-    instance->name = copy(name ? name : "");
+    instance->name = copy_text(name ? name : "");
     if (!instance->name) { free(instance); return NULL; }
     if (!token || strcmp(token, MODEL_TOKEN) != 0) {
-        refuse_with(instance, call, "%s: expected that of this FMU, " MODEL_TOKEN ", not %s", NULL, NULL, TEXTS(token_name, token ? token : "a null pointer"));
+        refuse_with_values(instance, call, "%s: expected that of this FMU, " MODEL_TOKEN ", not %s", NULL, NULL, TEXTS(token_name, token ? token : "a null pointer"));
         instance_free(instance);
         return NULL;
     }
@@ -155,7 +155,7 @@ void instance_reset(Instance *instance) {
 }
 
 /* A kernel's message with its slots filled in: {12}, {12:0} as a whole number, or {12:one|two}. */
-static void explain(char *text, const double *memory, int code) {
+static void format_message(char *text, const double *memory, int code) {
     const char *from = code > 0 && code < MESSAGE_COUNT && MESSAGES[code] ? MESSAGES[code] : "failed inside";
     text[0] = 0;
     while (*from) {
@@ -165,7 +165,7 @@ static void explain(char *text, const double *memory, int code) {
         unsigned slot = (unsigned)strtol(from + 1, &rest, 10);
         double value = memory[slot];
         if (strncmp(rest, ":0}", 3) == 0) {
-            append_whole(text, value);
+            append_whole_number(text, value);
             from = rest + 3;
         } else if (*rest == ':') {
             const char *word = rest + 1;
@@ -182,47 +182,47 @@ static void explain(char *text, const double *memory, int code) {
 }
 
 /* What a kernel's answer is for the call: with code 0 the outputs belong to the values set. */
-static Status computed(Instance *instance, const char *call, int code) {
+static Status check_kernel_code(Instance *instance, const char *call, int code) {
     instance->state.stale = code != 0;
     if (!code) return OK;
     char text[TEXT];
-    explain(text, instance->state.memory, code);
+    format_message(text, instance->state.memory, code);
     return refuse(instance, call, text);
 }
 
-static Status start(Instance *instance, const char *call) {
+static Status initialize_if_stale(Instance *instance, const char *call) {
     State *state = &instance->state;
-    return state->stale ? computed(instance, call, kernel_initialize(state->memory, state->start_time)) : OK;
+    return state->stale ? check_kernel_code(instance, call, kernel_initialize(state->memory, state->start_time)) : OK;
 }
 
-Status refresh(Instance *instance) {
+Status update_outputs(Instance *instance) {
     State *state = &instance->state;
-    if (state->phase == INITIALIZING) return start(instance, "get");
+    if (state->phase == INITIALIZING) return initialize_if_stale(instance, "get");
 #if REFRESH
-    if (state->stale && state->phase & (STEPPING | EVENT)) return computed(instance, "get", kernel_refresh(state->memory, state->memory[TIME_SLOT]));
+    if (state->stale && state->phase & (STEPPING | EVENT)) return check_kernel_code(instance, "get", kernel_refresh(state->memory, state->memory[TIME_SLOT]));
 #endif
     return OK;
 }
 
 Status set_experiment(Instance *instance, const char *call, double start_time, double stop_time) {
-    if (!in_phase(instance, call, INSTANTIATED)) return FAILED;
-    if (!isfinite(start_time)) return refuse_with(instance, call, "startTime = %g s: expected every finite number", NULL, &start_time, NULL);
+    if (!require_phase(instance, call, INSTANTIATED)) return FAILED;
+    if (!isfinite(start_time)) return refuse_with_values(instance, call, "startTime = %g s: expected every finite number", NULL, &start_time, NULL);
     if (!(stop_time >= start_time))
-        return refuse_with(instance, call, "startTime = %g s with stopTime = %g s: expected stopTime >= startTime", NULL, NUMBERS(start_time, stop_time), NULL);
+        return refuse_with_values(instance, call, "startTime = %g s with stopTime = %g s: expected stopTime >= startTime", NULL, NUMBERS(start_time, stop_time), NULL);
     instance->state.start_time = start_time;
     instance->stop_time = stop_time;
     return OK;
 }
 
 Status enter_initialization(Instance *instance, const char *call) {
-    if (!in_phase(instance, call, INSTANTIATED)) return FAILED;
+    if (!require_phase(instance, call, INSTANTIATED)) return FAILED;
     instance->state.phase = INITIALIZING;
     return OK;
 }
 
 Status exit_initialization(Instance *instance, const char *call) {
-    if (!in_phase(instance, call, INITIALIZING)) return FAILED;
-    Status status = start(instance, call);
+    if (!require_phase(instance, call, INITIALIZING)) return FAILED;
+    Status status = initialize_if_stale(instance, call);
     if (status == OK) instance->state.phase = instance->event_mode ? EVENT : STEPPING;
     return status;
 }
@@ -230,12 +230,12 @@ Status exit_initialization(Instance *instance, const char *call) {
 /* Why a step cannot be tried. */
 static Status refuse_step(Instance *instance, const char *call, double current, double size) {
     double reached = instance->state.memory[TIME_SLOT];
-    if (!(size >= 0) || isinf(size)) return refuse_with(instance, call, "communicationStepSize = %g s: expected every finite number >= 0", NULL, &size, NULL);
+    if (!(size >= 0) || isinf(size)) return refuse_with_values(instance, call, "communicationStepSize = %g s: expected every finite number >= 0", NULL, &size, NULL);
     if (!(fabs(current - reached) <= 1e-9 * (fabs(reached) + size)))
-        return refuse_with(instance, call, "currentCommunicationPoint = %g s: expected %g s, where the last step ended", NULL, NUMBERS(current, reached), NULL);
-    if (isinf(current + size)) return refuse_with(instance, call, "communicationStepSize = %g s: expected a step that ends at a finite time", NULL, &size, NULL);
+        return refuse_with_values(instance, call, "currentCommunicationPoint = %g s: expected %g s, where the last step ended", NULL, NUMBERS(current, reached), NULL);
+    if (isinf(current + size)) return refuse_with_values(instance, call, "communicationStepSize = %g s: expected a step that ends at a finite time", NULL, &size, NULL);
     const double *ends = NUMBERS(current + size, instance->stop_time);
-    return refuse_with(instance, call, "the step to time = %g s: expected none past stopTime = %g s", NULL, ends, NULL);
+    return refuse_with_values(instance, call, "the step to time = %g s: expected none past stopTime = %g s", NULL, ends, NULL);
 }
 
 /* Report once that a step is so short that the time stays the same; it is done all the same. */
@@ -246,11 +246,11 @@ static Status warn_short_step(Instance *instance, const char *call, double curre
     append_number(text, current);
     append(text, " s, expected a longer one; reported once");
     instance->warned = true;
-    return complain(instance, WARNING, call, text);
+    return report_reason(instance, WARNING, call, text);
 }
 
 /* Advance with a copy of the state to go back to: a step that reaches its limit of evaluations is discarded, and a shorter one may follow. */
-static Status advance(Instance *instance, const char *call, double target) {
+static Status advance_or_go_back(Instance *instance, const char *call, double target) {
     double *memory = instance->state.memory, reached = memory[TIME_SLOT];
     double before[MEMORY_SIZE - SKIP_COUNT];  /* what the step only writes need not be put back */
     size_t head = SKIP_FIRST * sizeof(double), tail = sizeof before - head;
@@ -264,14 +264,14 @@ static Status advance(Instance *instance, const char *call, double target) {
         return OK;
     }
     char text[TEXT];
-    explain(text, memory, code);
+    format_message(text, memory, code);
     memcpy(memory, before, head);
     memcpy(memory + SKIP_FIRST + SKIP_COUNT, before + SKIP_FIRST, tail);
-    return complain(instance, code == LIMITED_CODE ? DISCARD : FAILED, call, text);
+    return report_reason(instance, code == LIMITED_CODE ? DISCARD : FAILED, call, text);
 }
 
-Status step(Instance *instance, const char *call, double current, double size) {
-    if (!in_phase(instance, call, STEPPING)) return FAILED;
+Status step_to_point(Instance *instance, const char *call, double current, double size) {
+    if (!require_phase(instance, call, STEPPING)) return FAILED;
     double *memory = instance->state.memory, reached = memory[TIME_SLOT], target = current + size;
     double rounding = 1e-9 * (fabs(reached) + size);  /* of the importer's own sum of steps: no step past the end */
     if (!(size >= 0 && target < INFINITY && fabs(current - reached) <= rounding) || target - instance->stop_time > rounding)
@@ -282,27 +282,27 @@ Status step(Instance *instance, const char *call, double current, double size) {
 #if COAST
     if (!kernel_coast(memory, target)) return warning;
 #endif
-    Status status = advance(instance, call, target);
+    Status status = advance_or_go_back(instance, call, target);
     return status == OK ? warning : status;
 }
 
-Status may_get(Instance *instance, const char *call, const Variable *variable) {
+Status require_readable(Instance *instance, const char *call, const Variable *variable) {
     if (!variable->calculated || instance->state.phase != INSTANTIATED) return OK;
-    return refuse_with(instance, call, "%s is calculated: expected when initialization mode has been entered", NULL, NULL, &variable->name);
+    return refuse_with_values(instance, call, "%s is calculated: expected when initialization mode has been entered", NULL, NULL, &variable->name);
 }
 
-bool has_rate(Instance *instance, const char *call, const Variable *variable, int order) {
+bool require_rate(Instance *instance, const char *call, const Variable *variable, int order) {
     if (order == 1 && variable->rate >= 0) return true;
-    refuse_with(instance, call, "%s: expected order 1 of a continuous output", NULL, NULL, &variable->name);
+    refuse_with_values(instance, call, "%s: expected order 1 of a continuous output", NULL, NULL, &variable->name);
     return false;
 }
 
-void differentiate(const Instance *instance, double memory[MEMORY_SIZE]) {
+void copy_with_rates(const Instance *instance, double memory[MEMORY_SIZE]) {
     memcpy(memory, instance->state.memory, sizeof instance->state.memory);
     kernel_differentiate(memory, memory[TIME_SLOT]);
 }
 
-const Variable *find(Instance *instance, const char *call, unsigned reference, Type type) {
+const Variable *find_variable(Instance *instance, const char *call, unsigned reference, Type type) {
     const Variable *variable = reference < VARIABLE_COUNT ? &VARIABLES[reference] : NULL;
     bool real = variable && REAL_OUTPUTS && variable->calculated;  /* so described; by its own type it can be read all the same */
     if (variable && (variable->type == type || (real && type == REAL))) return variable;
@@ -325,19 +325,19 @@ static bool in_range(const Variable *variable, double value) {
     return variable->type == BOOLEAN || (isfinite(value) && value >= variable->minimum && value <= variable->maximum);
 }
 
-Status may_set(Instance *instance, const char *call, const Variable *variable, double value) {
+Status require_settable(Instance *instance, const char *call, const Variable *variable, double value) {
     const char *reason = NULL;
     if (variable->calculated) reason = ": an output cannot be set, expected a parameter or an input";
     else if (variable->fixed && !(instance->state.phase & (INSTANTIATED | INITIALIZING)))
         reason = ": a fixed parameter, to be set before the end of initialisation";
     else if (in_range(variable, value)) return OK;
-    if (reason) return refuse_with(instance, call, "%s = %v%s", variable, &value, TEXTS(variable->name, reason));
+    if (reason) return refuse_with_values(instance, call, "%s = %v%s", variable, &value, TEXTS(variable->name, reason));
     bool has_unit = variable->unit[0] && strcmp(variable->unit, "1") != 0;
     const char *const *texts = TEXTS(variable->name, has_unit ? " " : "", has_unit ? variable->unit : "", variable->range);
-    return refuse_with(instance, call, "%s = %v%s%s: expected %s", variable, &value, texts);
+    return refuse_with_values(instance, call, "%s = %v%s%s: expected %s", variable, &value, texts);
 }
 
-void set(Instance *instance, unsigned reference, double value) {
+void set_value(Instance *instance, unsigned reference, double value) {
     State *state = &instance->state;
     state->memory[reference] = value;
     if (VARIABLES[reference].set_flag) state->memory[VARIABLES[reference].set_flag] = 1.0;
@@ -362,7 +362,7 @@ static void state_to_bytes(const State *state, char *bytes) {
 }
 
 /* Undamaged bytes of this model's state, without a look at its numbers. */
-static bool unpack(State *state, const char *bytes, size_t size) {
+static bool unpack_state(State *state, const char *bytes, size_t size) {
     char header[STATE_HEADER] = STATE_MAGIC;
     double head[3];
     uint64_t hash;
@@ -397,11 +397,11 @@ static bool is_hidden_value(unsigned slot, double value) {
 
 #define NEVER "a saved state that this FMU never had: "
 
-static Status restored(Instance *instance, const char *call, State *state) {
+static Status check_restored_state(Instance *instance, const char *call, State *state) {
     for (unsigned i = 0; i < VARIABLE_COUNT; i++) {
         const Variable *variable = &VARIABLES[i];
         if (!is_value(variable, state->memory[i]))
-            return refuse_with(instance, call, NEVER "%s = %v: expected %s", variable, &state->memory[i], TEXTS(variable->name, variable->range));
+            return refuse_with_values(instance, call, NEVER "%s = %v: expected %s", variable, &state->memory[i], TEXTS(variable->name, variable->range));
     }
     if (state->phase & (INSTANTIATED | INITIALIZING)) {  /* nothing is calculated yet, or it is once more */
         for (unsigned i = 0; i < MEMORY_SIZE; i++) if (i >= VARIABLE_COUNT || VARIABLES[i].calculated) state->memory[i] = 0;
@@ -412,13 +412,13 @@ static Status restored(Instance *instance, const char *call, State *state) {
         if (is_hidden_value(i, state->memory[i])) continue;
         char slot[16];
         snprintf(slot, sizeof slot, "%u", i);
-        return refuse_with(instance, call, NEVER "%g in slot %s", NULL, &state->memory[i], TEXTS(slot));
+        return refuse_with_values(instance, call, NEVER "%g in slot %s", NULL, &state->memory[i], TEXTS(slot));
     }
     int code = kernel_restore(state->memory, state->start_time);
     if (!code) return OK;
     char problem[TEXT];
-    explain(problem, state->memory, code);
-    return refuse_with(instance, call, NEVER "%s", NULL, NULL, TEXTS(problem));
+    format_message(problem, state->memory, code);
+    return refuse_with_values(instance, call, NEVER "%s", NULL, NULL, TEXTS(problem));
 }
 
 /* Most of a state are series that a master never asks for. */
@@ -429,7 +429,7 @@ static void copy_state(State *to, const State *from) {
     memcpy((char *)to + tail, (const char *)from + tail, sizeof *to - tail);
 }
 
-static Status keep(Instance *instance, const char *call, void **to, const State *state) {
+static Status keep_state_at_handle(Instance *instance, const char *call, void **to, const State *state) {
     if (!*to) *to = calloc(1, sizeof(State));
     if (!*to) return refuse(instance, call, "out of memory");
     copy_state(*to, state);
@@ -437,7 +437,7 @@ static Status keep(Instance *instance, const char *call, void **to, const State 
 }
 
 Status save_state(Instance *instance, const char *call, void **to) {
-    return to ? keep(instance, call, to, &instance->state) : refuse(instance, call, "a null pointer");
+    return to ? keep_state_at_handle(instance, call, to, &instance->state) : refuse(instance, call, "a null pointer");
 }
 
 Status restore_state(Instance *instance, const char *call, const void *from) {
@@ -472,7 +472,7 @@ Status serialize_state(Instance *instance, const char *call, const void *state, 
 Status deserialize_state(Instance *instance, const char *call, const void *bytes, size_t size, void **to) {
     if (!bytes || !to) return refuse(instance, call, "a null pointer");
     State state;
-    if (!unpack(&state, bytes, size)) return refuse(instance, call, "expected a state saved by this FMU (" STATE_MAGIC "), and undamaged");
-    Status status = restored(instance, call, &state);
-    return status == OK ? keep(instance, call, to, &state) : status;
+    if (!unpack_state(&state, bytes, size)) return refuse(instance, call, "expected a state saved by this FMU (" STATE_MAGIC "), and undamaged");
+    Status status = check_restored_state(instance, call, &state);
+    return status == OK ? keep_state_at_handle(instance, call, to, &state) : status;
 }

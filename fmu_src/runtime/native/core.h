@@ -64,35 +64,35 @@ void instance_reset(Instance *);
 
 /* Fail with a message, which is no format. */
 Status refuse(Instance *, const char *call, const char *reason);
-bool in_phase(Instance *, const char *call, int phases);
-bool missing(Instance *, const char *call, size_t count, const void *a, const void *b);  /* an array that is not empty */
+bool require_phase(Instance *, const char *call, int phases);
+bool refuse_missing_array(Instance *, const char *call, size_t count, const void *a, const void *b);  /* an array that is not empty */
 
 /* Whether all categories are those of modelDescription.xml. */
-Status check_categories(Instance *, const char *call, size_t count, const char *const categories[]);
+Status require_known_categories(Instance *, const char *call, size_t count, const char *const categories[]);
 
 /* `stop_time` is INFINITY where none is defined. */
 Status set_experiment(Instance *, const char *call, double start_time, double stop_time);
 Status enter_initialization(Instance *, const char *call);
 Status exit_initialization(Instance *, const char *call);
-Status step(Instance *, const char *call, double current, double size);
+Status step_to_point(Instance *, const char *call, double current, double size);
 
 extern const char *const TYPE_NAMES[];  /* of FMI's version, in the order of Type */
 
 /* Find the variable of a reference, of a type; NULL after a refusal. */
-const Variable *find(Instance *, const char *call, unsigned reference, Type type);
-Status may_set(Instance *, const char *call, const Variable *, double value);
+const Variable *find_variable(Instance *, const char *call, unsigned reference, Type type);
+Status require_settable(Instance *, const char *call, const Variable *, double value);
 
 /* Set a variable that may be set: a polynomial input begins here. */
-void set(Instance *, unsigned reference, double value);
-Status refresh(Instance *);
+void set_value(Instance *, unsigned reference, double value);
+Status update_outputs(Instance *);
 
-Status may_get(Instance *, const char *call, const Variable *);
+Status require_readable(Instance *, const char *call, const Variable *);
 
 /* Whether a variable has a derivative of this order: continuous outputs have the first. */
-bool has_rate(Instance *, const char *call, const Variable *, int order);
+bool require_rate(Instance *, const char *call, const Variable *, int order);
 
 /* A copy of the memory with all rates of change in their slots: reading them changes no state. */
-void differentiate(const Instance *, double memory[MEMORY_SIZE]);
+void copy_with_rates(const Instance *, double memory[MEMORY_SIZE]);
 
 #define STATE_BYTES (STATE_HEADER + sizeof(double) * (MEMORY_SIZE + 3) + 8)  /* header, head, memory, checksum */
 #define STATE_HEADER 64

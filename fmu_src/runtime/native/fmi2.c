@@ -47,7 +47,7 @@ void fmi2FreeInstance(fmi2Component c) { instance_free(c); }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[]) {
     (void)on;
-    return c ? (fmi2Status)check_categories(c, "fmi2SetDebugLogging", count, categories) : fmi2Error;
+    return c ? (fmi2Status)require_known_categories(c, "fmi2SetDebugLogging", count, categories) : fmi2Error;
 }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real start, fmi2Boolean stop_defined, fmi2Real stop) {
@@ -66,7 +66,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
 
 fmi2Status fmi2Terminate(fmi2Component c) {
     Instance *instance = c;
-    if (!instance || !in_phase(instance, "fmi2Terminate", STEPPING | STOPPED)) return fmi2Error;
+    if (!instance || !require_phase(instance, "fmi2Terminate", STEPPING | STOPPED)) return fmi2Error;
     instance->state.phase = TERMINATED;
     return fmi2OK;
 }
@@ -80,10 +80,10 @@ fmi2Status fmi2Reset(fmi2Component c) {
 #define GETTER(NAME, TYPE, KIND, EXPRESSION)                                                                                     \
     fmi2Status NAME(fmi2Component c, const fmi2ValueReference refs[], size_t count, TYPE values[]) {                             \
         Instance *instance = c;                                                                                                  \
-        if (!instance || !in_phase(instance, #NAME, READABLE) || missing(instance, #NAME, count, refs, values)) return fmi2Error; \
-        if (refresh(instance) != OK) return fmi2Error;                                                                           \
+        if (!instance || !require_phase(instance, #NAME, READABLE) || refuse_missing_array(instance, #NAME, count, refs, values)) return fmi2Error; \
+        if (update_outputs(instance) != OK) return fmi2Error;                                                                           \
         for (size_t i = 0; i < count; i++) {                                                                                     \
-            if (!find(instance, #NAME, refs[i], KIND)) return fmi2Error;                                                         \
+            if (!find_variable(instance, #NAME, refs[i], KIND)) return fmi2Error;                                                         \
             double value = instance->state.memory[refs[i]];                                                                      \
             values[i] = EXPRESSION;                                                                                              \
         }                                                                                                                        \
@@ -97,12 +97,12 @@ GETTER(fmi2GetBoolean, fmi2Boolean, BOOLEAN, value != 0 ? fmi2True : fmi2False)
 #define SETTER(NAME, TYPE, KIND, EXPRESSION)                                                                                     \
     fmi2Status NAME(fmi2Component c, const fmi2ValueReference refs[], size_t count, const TYPE values[]) {                       \
         Instance *instance = c;                                                                                                  \
-        if (!instance || !in_phase(instance, #NAME, SETTABLE) || missing(instance, #NAME, count, refs, values)) return fmi2Error; \
+        if (!instance || !require_phase(instance, #NAME, SETTABLE) || refuse_missing_array(instance, #NAME, count, refs, values)) return fmi2Error; \
         for (size_t i = 0; i < count; i++) {  /* all or none */                                                                  \
-            const Variable *variable = find(instance, #NAME, refs[i], KIND);                                                     \
-            if (!variable || may_set(instance, #NAME, variable, EXPRESSION) != OK) return fmi2Error;                             \
+            const Variable *variable = find_variable(instance, #NAME, refs[i], KIND);                                                     \
+            if (!variable || require_settable(instance, #NAME, variable, EXPRESSION) != OK) return fmi2Error;                             \
         }                                                                                                                        \
-        for (size_t i = 0; i < count; i++) set(instance, refs[i], EXPRESSION);                                                   \
+        for (size_t i = 0; i < count; i++) set_value(instance, refs[i], EXPRESSION);                                                   \
         return fmi2OK;                                                                                                           \
     }
 
@@ -153,17 +153,17 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference refs[], size_t count, const fmi2Integer orders[], const fmi2Real values[]) {
     static const char *const call = "fmi2SetRealInputDerivatives";
     Instance *instance = c;
-    if (!instance || !in_phase(instance, call, SETTABLE) || missing(instance, call, count, refs, values) || missing(instance, call, count, orders, values))
+    if (!instance || !require_phase(instance, call, SETTABLE) || refuse_missing_array(instance, call, count, refs, values) || refuse_missing_array(instance, call, count, orders, values))
         return fmi2Error;
     for (int write = 0; write < 2; write++)
         for (size_t i = 0; i < count; i++) {
-            const Variable *input = find(instance, call, refs[i], REAL);
+            const Variable *input = find_variable(instance, call, refs[i], REAL);
             if (!input) return fmi2Error;
             if (!input->input_derivatives || orders[i] < 1 || orders[i] > input->input_derivatives)
                 return refuse2(instance, call, "expected " INPUT_DERIVATIVES);
             const Variable *derivative = input + orders[i];  /* the derivatives of an input follow it in the table */
-            if (write) set(instance, refs[i] + (unsigned)orders[i], values[i]);
-            else if (may_set(instance, call, derivative, values[i]) != OK) return fmi2Error;
+            if (write) set_value(instance, refs[i] + (unsigned)orders[i], values[i]);
+            else if (require_settable(instance, call, derivative, values[i]) != OK) return fmi2Error;
         }
     return fmi2OK;
 }
@@ -171,16 +171,16 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference refs[], size_t count, const fmi2Integer orders[], fmi2Real values[]) {
     static const char *const call = "fmi2GetRealOutputDerivatives";
     Instance *instance = c;
-    if (!instance || !in_phase(instance, call, READABLE) || missing(instance, call, count, refs, values) || missing(instance, call, count, orders, values))
+    if (!instance || !require_phase(instance, call, READABLE) || refuse_missing_array(instance, call, count, refs, values) || refuse_missing_array(instance, call, count, orders, values))
         return fmi2Error;
-    if (refresh(instance) != OK) return fmi2Error;
+    if (update_outputs(instance) != OK) return fmi2Error;
     for (size_t i = 0; i < count; i++) {
-        const Variable *output = find(instance, call, refs[i], REAL);
+        const Variable *output = find_variable(instance, call, refs[i], REAL);
         if (!output) return fmi2Error;
-        if (!has_rate(instance, call, output, orders[i])) return fmi2Error;
+        if (!require_rate(instance, call, output, orders[i])) return fmi2Error;
     }
     double memory[MEMORY_SIZE];
-    differentiate(instance, memory);
+    copy_with_rates(instance, memory);
     for (size_t i = 0; i < count; i++) {
         values[i] = memory[VARIABLES[refs[i]].rate];
         if (!isfinite(values[i])) return refuse2(instance, call, "a rate of change leaves the range of floating-point numbers");
@@ -190,7 +190,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real current, fmi2Real size, fmi2Boolean no_set_state_prior) {
     (void)no_set_state_prior;
-    return c ? (fmi2Status)step(c, "fmi2DoStep", current, size) : fmi2Error;
+    return c ? (fmi2Status)step_to_point(c, "fmi2DoStep", current, size) : fmi2Error;
 }
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value) {

@@ -23,7 +23,7 @@ const char *fmi3GetVersion(void) { return fmi3Version; }
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t count, const fmi3String categories[]) {
     (void)on;
-    return c ? (fmi3Status)check_categories(c, "fmi3SetDebugLogging", count, categories) : fmi3Error;
+    return c ? (fmi3Status)require_known_categories(c, "fmi3SetDebugLogging", count, categories) : fmi3Error;
 }
 
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
@@ -59,7 +59,7 @@ fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
 }
 
 static fmi3Status change(Instance *instance, const char *call, int from, int to) {
-    if (!instance || !in_phase(instance, call, from)) return fmi3Error;
+    if (!instance || !require_phase(instance, call, from)) return fmi3Error;
     instance->state.phase = to;
     return fmi3OK;
 }
@@ -88,13 +88,13 @@ fmi3Status fmi3Reset(fmi3Instance c) {
 /* Scalars, arrays and time are stretches of the memory: first slot and length of a Float64 reference, length 0 after a refusal. */
 static size_t stretch(Instance *instance, const char *call, fmi3ValueReference reference, size_t *first) {
     *first = reference;
-    if (reference == TIME_SLOT) return in_phase(instance, call, CALCULATED);
+    if (reference == TIME_SLOT) return require_phase(instance, call, CALCULATED);
     if (reference >= ARRAY_BASE && reference < ARRAY_BASE + ARRAY_COUNT) {
         *first = ARRAYS[reference - ARRAY_BASE].first;
-        return may_get(instance, call, &VARIABLES[*first]) == OK ? ARRAYS[reference - ARRAY_BASE].size : 0;
+        return require_readable(instance, call, &VARIABLES[*first]) == OK ? ARRAYS[reference - ARRAY_BASE].size : 0;
     }
-    const Variable *variable = find(instance, call, reference, REAL);
-    if (!variable || may_get(instance, call, variable) != OK) return 0;
+    const Variable *variable = find_variable(instance, call, reference, REAL);
+    if (!variable || require_readable(instance, call, variable) != OK) return 0;
     if (!variable->element) return 1;
     refuse(instance, call, "valueReference: expected that of the array, not of an element");
     return 0;
@@ -103,7 +103,7 @@ static size_t stretch(Instance *instance, const char *call, fmi3ValueReference r
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_t count, fmi3Float64 values[], size_t value_count) {
     static const char *const call = "fmi3GetFloat64";
     Instance *instance = c;
-    if (!instance || !in_phase(instance, call, READABLE) || missing(instance, call, count, refs, values) || refresh(instance) != OK) return fmi3Error;
+    if (!instance || !require_phase(instance, call, READABLE) || refuse_missing_array(instance, call, count, refs, values) || update_outputs(instance) != OK) return fmi3Error;
     size_t place = 0;
     for (size_t i = 0; i < count; i++) {
         size_t first, size = stretch(instance, call, refs[i], &first);
@@ -119,13 +119,13 @@ fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_t count, const fmi3Float64 values[], size_t value_count) {
     static const char *const call = "fmi3SetFloat64";
     Instance *instance = c;
-    if (!instance || !in_phase(instance, call, SETTABLE) || missing(instance, call, count, refs, values)) return fmi3Error;
+    if (!instance || !require_phase(instance, call, SETTABLE) || refuse_missing_array(instance, call, count, refs, values)) return fmi3Error;
     if (value_count != count) return refuse3(instance, call, "nValues: expected one for each value reference, arrays cannot be set");
     for (size_t i = 0; i < count; i++) {
-        const Variable *variable = find(instance, call, refs[i], REAL);
-        if (!variable || may_set(instance, call, variable, values[i]) != OK) return fmi3Error;
+        const Variable *variable = find_variable(instance, call, refs[i], REAL);
+        if (!variable || require_settable(instance, call, variable, values[i]) != OK) return fmi3Error;
     }
-    for (size_t i = 0; i < count; i++) set(instance, refs[i], values[i]);
+    for (size_t i = 0; i < count; i++) set_value(instance, refs[i], values[i]);
     return fmi3OK;
 }
 
@@ -133,12 +133,12 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_
     fmi3Status fmi3Get##NAME(fmi3Instance c, const fmi3ValueReference refs[], size_t count, TYPE values[], size_t value_count) {                 \
         static const char *const call = "fmi3Get" #NAME;                                                                                         \
         Instance *instance = c;                                                                                                                  \
-        if (!instance || !in_phase(instance, call, READABLE) || missing(instance, call, count, refs, values)) return fmi3Error;                   \
+        if (!instance || !require_phase(instance, call, READABLE) || refuse_missing_array(instance, call, count, refs, values)) return fmi3Error;                   \
         if (value_count != count) return refuse3(instance, call, "nValues: expected one for each value reference");                            \
-        if (refresh(instance) != OK) return fmi3Error;                                                                                           \
+        if (update_outputs(instance) != OK) return fmi3Error;                                                                                           \
         for (size_t i = 0; i < count; i++) {                                                                                                     \
-            const Variable *variable = find(instance, call, refs[i], KIND);                                                                      \
-            if (!variable || may_get(instance, call, variable) != OK) return fmi3Error;                                                          \
+            const Variable *variable = find_variable(instance, call, refs[i], KIND);                                                                      \
+            if (!variable || require_readable(instance, call, variable) != OK) return fmi3Error;                                                          \
             double value = instance->state.memory[refs[i]];                                                                                      \
             values[i] = FROM_MEMORY;                                                                                                             \
         }                                                                                                                                        \
@@ -147,13 +147,13 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_
     fmi3Status fmi3Set##NAME(fmi3Instance c, const fmi3ValueReference refs[], size_t count, const TYPE values[], size_t value_count) {           \
         static const char *const call = "fmi3Set" #NAME;                                                                                         \
         Instance *instance = c;                                                                                                                  \
-        if (!instance || !in_phase(instance, call, SETTABLE) || missing(instance, call, count, refs, values)) return fmi3Error;                   \
+        if (!instance || !require_phase(instance, call, SETTABLE) || refuse_missing_array(instance, call, count, refs, values)) return fmi3Error;                   \
         if (value_count != count) return refuse3(instance, call, "nValues: expected one for each value reference");                            \
         for (size_t i = 0; i < count; i++) {                                                                                                     \
-            const Variable *variable = find(instance, call, refs[i], KIND);                                                                      \
-            if (!variable || may_set(instance, call, variable, TO_MEMORY) != OK) return fmi3Error;                                               \
+            const Variable *variable = find_variable(instance, call, refs[i], KIND);                                                                      \
+            if (!variable || require_settable(instance, call, variable, TO_MEMORY) != OK) return fmi3Error;                                               \
         }                                                                                                                                        \
-        for (size_t i = 0; i < count; i++) set(instance, refs[i], TO_MEMORY);                                                                    \
+        for (size_t i = 0; i < count; i++) set_value(instance, refs[i], TO_MEMORY);                                                                    \
         return fmi3OK;                                                                                                                           \
     }
 
@@ -163,7 +163,7 @@ GET_SET(Int32, fmi3Int32, INTEGER, (fmi3Int32)value, (double)values[i])
 fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference refs[], size_t count, fmi3Clock values[]) {
     static const char *const call = "fmi3GetClock";
     Instance *instance = c;
-    if (!instance || !in_phase(instance, call, INITIALIZING | EVENT) || missing(instance, call, count, refs, values)) return fmi3Error;
+    if (!instance || !require_phase(instance, call, INITIALIZING | EVENT) || refuse_missing_array(instance, call, count, refs, values)) return fmi3Error;
     for (size_t i = 0; i < count; i++) {
         if (!EVENT_CLOCK || refs[i] != CLOCK_REFERENCE) return refuse3(instance, call, "valueReference: expected that of the clock in modelDescription.xml");
         values[i] = instance->state.clock ? fmi3ClockActive : fmi3ClockInactive;
@@ -174,7 +174,7 @@ fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference refs[], size_t 
 fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *again, fmi3Boolean *terminate, fmi3Boolean *nominals, fmi3Boolean *values,
                                     fmi3Boolean *next_defined, fmi3Float64 *next) {
     Instance *instance = c;
-    if (!instance || !in_phase(instance, "fmi3UpdateDiscreteStates", EVENT)) return fmi3Error;
+    if (!instance || !require_phase(instance, "fmi3UpdateDiscreteStates", EVENT)) return fmi3Error;
     if (again) *again = fmi3False;
     if (terminate) *terminate = fmi3False;
     if (nominals) *nominals = fmi3False;
@@ -186,7 +186,7 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *again, fmi3Bool
 }
 
 fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance c) {
-    return c && in_phase(c, "fmi3EvaluateDiscreteStates", INITIALIZING | EVENT) ? fmi3OK : fmi3Error;
+    return c && require_phase(c, "fmi3EvaluateDiscreteStates", INITIALIZING | EVENT) ? fmi3OK : fmi3Error;
 }
 
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *to) {
@@ -220,9 +220,9 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference ref
                                     size_t value_count) {
     static const char *const call = "fmi3GetOutputDerivatives";
     Instance *instance = c;
-    if (!instance || !in_phase(instance, call, CALCULATED) || missing(instance, call, count, refs, values) || missing(instance, call, count, orders, values))
+    if (!instance || !require_phase(instance, call, CALCULATED) || refuse_missing_array(instance, call, count, refs, values) || refuse_missing_array(instance, call, count, orders, values))
         return fmi3Error;
-    if (refresh(instance) != OK) return fmi3Error;
+    if (update_outputs(instance) != OK) return fmi3Error;
     double memory[MEMORY_SIZE];
     for (int write = 0; write < 2; write++) {
         size_t place = 0;
@@ -233,11 +233,11 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference ref
                 if (k == TIME_SLOT) return refuse3(instance, call, "time: expected order 1 of a continuous output");
                 if (write && !isfinite(memory[VARIABLES[k].rate])) return refuse3(instance, call, "a rate of change leaves the range of floating-point numbers");
                 if (write) values[place] = memory[VARIABLES[k].rate];
-                else if (!has_rate(instance, call, &VARIABLES[k], orders[i])) return fmi3Error;
+                else if (!require_rate(instance, call, &VARIABLES[k], orders[i])) return fmi3Error;
             }
         }
         if (place != value_count) return refuse3(instance, call, "nValues: expected as many as the value references have");
-        if (!write) differentiate(instance, memory);
+        if (!write) copy_with_rates(instance, memory);
     }
     return fmi3OK;
 }
@@ -248,7 +248,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 current, fmi3Float64 size, fmi
     Instance *instance = c;
     if (!instance || !event_needed || !terminate || !early || !last) return refuse3(instance, "fmi3DoStep", "a null pointer");
     double before = impacts(instance);
-    Status status = step(instance, "fmi3DoStep", current, size);
+    Status status = step_to_point(instance, "fmi3DoStep", current, size);
     *event_needed = *terminate = *early = fmi3False;
     *last = instance->state.memory[TIME_SLOT];
     if (status != OK && status != WARNING) return (fmi3Status)status;

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from fmu_src.kernels.numerics.elementary import exp_decay, fraction, sincos_turns
+from fmu_src.kernels.numerics.elementary import exp_decay, fraction_of_turn, sincos_turns
 
 from ..oscillator.kernel import examples
 
@@ -53,7 +53,7 @@ def test_exponential_decay(x):
 @example(-0.0)
 @example(1.0)
 def test_fraction_is_in_the_unit_interval(u):
-    part = fraction(u)
+    part = fraction_of_turn(u)
     assert 0.0 <= part < 1.0
     distance = abs(part - mp.frac(mp.mpf(u)))
     assert min(distance, 1 - distance) <= 2.0**-53  # next to a full turn, 1 - tiny is 0

@@ -77,11 +77,15 @@ def test_the_parabola_touches_the_quintic_at_the_trial():
     h[:, 3:] = -np.abs(h[:, 3:])
     expected = 2.0 * (value(h, s[:, None])[:, 0] - h[:, 0] - h[:, 1] * s) / s**2
     rows = zip(h.tolist(), s.tolist(), strict=True)
-    found = np.array([kernel.lowest_curvature(*row[2:5], -row[5], far) for row, far in rows])
+    found = np.array(
+        [kernel.lowest_parabola_curvature(*row[2:5], -row[5], far) for row, far in rows]
+    )
     assert np.abs(found - expected).max() < 1e-9
     mixed, s = starts(3)
     rows = zip(mixed.tolist(), s.tolist(), strict=True)
-    least = np.array([kernel.lowest_curvature(*row[2:5], -row[5], far) for row, far in rows])
+    least = np.array(
+        [kernel.lowest_parabola_curvature(*row[2:5], -row[5], far) for row, far in rows]
+    )
     parabola = np.column_stack([mixed[:, :2], least])
     at = s[:, None] * PARTS
     assert (value(parabola, at) <= value(mixed, at) + 1e-14 * value(np.abs(mixed), at)).all()
@@ -212,15 +216,15 @@ def test_one_step_of_the_walk():
     h, reach = starts(11, 1500)
     ended = 0
     for row, far in zip(h.tolist(), reach.tolist(), strict=True):
-        found = kernel.next_step(*row[:5], -row[5], 3.0, far, 1e-12)
+        found = kernel.next_step_or_root(*row[:5], -row[5], 3.0, far, 1e-12)
         if row[5]:
             for scale in (2.0**40, 2.0**-40):
                 scaled = [scale * one for one in row]
-                assert kernel.next_step(*scaled[:5], -scaled[5], 3.0, far, 1e-12) == found
+                assert kernel.next_step_or_root(*scaled[:5], -scaled[5], 3.0, far, 1e-12) == found
         ended += found[1]
         assert found[1] or found[0] > 0.0
     assert 100 < ended < 1400
-    assert kernel.next_step(-1e-9, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1e-12) == (0.0, True)
+    assert kernel.next_step_or_root(-1e-9, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1e-12) == (0.0, True)
     assert math.isnan(kernel.NO_NUMBER)
     for h0, ends in ((2.0e-16, True), (2.4e-16, False)):  # a last digit of where the walk stands
         assert kernel.clear_step_or_root(h0, -1.0, 1.0, 1e3, 1e3, 1e20, 2.0, 1.0, 0.0)[1] == ends

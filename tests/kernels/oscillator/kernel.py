@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import motion, stepper
-from fmu_src.kernels.oscillator.excitation import inputs_changed
+from fmu_src.kernels.oscillator.excitation import have_inputs_changed
 
 DEFAULTS = {
     **{"m1": 1.0, "m2": 1.0, "k1": 1.0, "k2": 1.2, "d1": 0.01, "d2": 0.01, "e": 0.7},
@@ -53,7 +53,7 @@ def pieces(m, time):
     age at exit).
     """
     passed = []
-    entry = [0.0 if inputs_changed(m) else stepper.local_time(m, m[at.TIME])]
+    entry = [0.0 if have_inputs_changed(m) else stepper.local_time(m, m[at.TIME])]
     end_state = motion.end_state
 
     def note(now):

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from fmu_src.kernels.numerics.elementary import sincos_turns
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.contact import first_nonzero_derivative, gap_acceleration
+from fmu_src.kernels.oscillator.contact import first_nonzero_force_derivative, gap_acceleration
 from fmu_src.kernels.oscillator.motion import state_at
 from tests import exact_motion as truth
 
@@ -61,7 +61,7 @@ def test_a_force_of_rounding_alone_decides_nothing(force):
     for v in rng.uniform(-1.0, 1.0, 300).tolist():
         x = -(m[at.FORCE_V] * v + pull) / m[at.FORCE_X]
         left += gap_acceleration(m, x, v, m[at.COSINE], m[at.SINE], 0.0) != 0.0
-        assert first_nonzero_derivative(m, x, v, 0)[0] == 1
+        assert first_nonzero_force_derivative(m, x, v, 0)[0] == 1
     assert left > 10
 
 
@@ -71,17 +71,17 @@ def test_drives_that_cancel_but_for_rounding_decide_nothing():
     """
     unlike, still = {"d1": 0.3, "d2": 0.05, "k2": 1.3}, {"box_amplitude": 0.0}
     m = started(**unlike, **still, force1_amplitude=0.3, phase_start=HALF_TURN)
-    assert first_nonzero_derivative(m, 0.0, 0.0, 0)[0] == 1
+    assert first_nonzero_force_derivative(m, 0.0, 0.0, 0)[0] == 1
     for phase in np.linspace(1.4, 1.7, 100).tolist():
         sine = math.sin(phase)
         on_mass = {**still, "force1_amplitude": 0.3, "force1": -0.3 * sine}
         for drive, order in ((on_mass, 1), ({"box_acceleration": 0.16 * sine}, 2)):
             m = started(phase_start=phase, **unlike, **drive)
-            assert first_nonzero_derivative(m, 0.0, 0.0, 0)[0] == order
+            assert first_nonzero_force_derivative(m, 0.0, 0.0, 0)[0] == order
     for d1, k2 in ((2e-6, 1.2), (1.1, 0.8)):  # next to no damping; more than the spring
         m = started(d1=d1, d2=0.0, k2=k2, **still)
         damping = 2.0 * m[at.OSCILLATOR_3 + at.DAMPING]
         part = (m[at.FORCE_X] - m[at.FORCE_V] * damping) / m[at.FORCE_V]
         for v in np.linspace(0.1, 1.0, 100).tolist():
             x = part * v / m[at.OSCILLATOR_3 + at.OMEGA_SQUARED]
-            assert first_nonzero_derivative(m, x, v, 1)[0] == 2
+            assert first_nonzero_force_derivative(m, x, v, 1)[0] == 2

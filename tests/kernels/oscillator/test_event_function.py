@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from fmu_src.kernels.numerics.first_root import INFINITE
 from fmu_src.kernels.oscillator import event_function, secular
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.contact import first_nonzero_derivative
-from fmu_src.kernels.oscillator.motion import begin_common
+from fmu_src.kernels.oscillator.contact import first_nonzero_force_derivative
+from fmu_src.kernels.oscillator.motion import begin_contact_or_glued
 from fmu_src.kernels.oscillator.nodes import LONGEST
 from tests import exact_motion as truth
 
@@ -50,7 +50,7 @@ def contact_and_pull(values, state):
     x, v = state[0], state[1]
     m = started(**values)
     m[at.TURN], m[at.CUBIC_AGE] = values["phase_start"] / 6.283185307179586 % 1.0, 0.0
-    begin_common(m, at.CONTACT, x, v)
+    begin_contact_or_glued(m, at.CONTACT, x, v)
     full = {**DEFAULTS, **values}
     place = x + rest_together(values)[0]
     _, push = truth.contact_motion(full, place, v, mp.mpf(values["phase_start"]))
@@ -76,7 +76,7 @@ CRITICAL = {"d1": 2.0, "d2": 2.0 + 1e-9, "k2": 1.0, "box_frequency": 0.4, "phase
 def test_value_and_derivatives(make, values, state, age):
     m, signal = make(values, state)
     node, at_node = m[at.RIGHT_AGE], m[at.RIGHT_VALUES : at.RIGHT_VALUES + 3]
-    work, found = m[at.WORK], event_function.evaluate(m, age)[:5]
+    work, found = m[at.WORK], event_function.evaluate_event_function(m, age)[:5]
     assert m[at.WORK] == work + 1.0
     fastest = max(1.0, signal.fastest_rate())
     growth = (1.0 + age) ** 3  # of the cubic
@@ -99,7 +99,7 @@ def derivative(signal, order):
 def test_bounds_hold_for_all_later_times(make, values, state, age):
     m, signal = make(values, state)
     sixth = m[at.REMAINDER] / m[at.HERMITE + 2]
-    found = event_function.evaluate(m, age)
+    found = event_function.evaluate_event_function(m, age)
     later = age + np.concatenate([np.linspace(0.0, 3.0, 300), np.geomspace(3.0, 300.0, 300)])
     rounding = 1e-12 * (size(signal) + 1.0) * max(1.0, signal.fastest_rate()) ** 5
     fifth = derivative(signal, 5)
@@ -122,9 +122,9 @@ def test_bounds_of_nearly_equal_oscillators_hold_as_long_as_they_are_used(
     equal = {"k2": values["m2"] * (1.0 + near), "d2": values["d1"] * values["m2"] * (1.0 - near)}
     x1, v1, rise, speed = state
     m, signal = flight_and_gap({**values, **equal}, (x1, v1, x1 + gap * rise, v1 + gap * speed))
-    assert event_function.are_nearly_equal(m)
+    assert event_function.are_halves_nearly_equal(m)
     spacing = m[at.SPACING]
-    found = event_function.evaluate(m, age)[5]
+    found = event_function.evaluate_event_function(m, age)[5]
     signal = derivative(signal, 5)
     assert all(abs(signal(age + part * spacing)) <= found for part in np.linspace(0.0, 1.0, 8))
     sixth, found = signal.derivative(), m[at.REMAINDER] / m[at.HERMITE + 2]
@@ -139,7 +139,7 @@ def test_bounds_of_higher_derivatives(values, state, order):
     rounding = 1e-12 * (size(signal) + 1.0) * max(1.0, signal.fastest_rate()) ** order
     signal = derivative(signal, order)
     highest = np.abs(signal.sample(np.linspace(0.0, 60.0, 3000))).max()
-    assert highest <= sum(event_function.derivative_bounds(m, order)) * (1 + 1e-9) + rounding
+    assert highest <= sum(event_function.event_derivative_bounds(m, order)) * (1 + 1e-9) + rounding
 
 
 @examples(60)
@@ -147,7 +147,7 @@ def test_bounds_of_higher_derivatives(values, state, order):
 def test_the_derivative_that_decides_on_the_boundary_is_newtons(values, state, lowest):
     """Dampers, box and all, in each order: what comes after a release hangs on them."""
     m, signal = contact_and_pull(values, state)
-    order, value = first_nonzero_derivative(m, state[0], state[1], lowest)
+    order, value = first_nonzero_force_derivative(m, state[0], state[1], lowest)
     assume(order >= 0)
     rate = max(1.0, signal.fastest_rate())
     scale = (size(signal) + 1.0) * rate ** (order + 2)
@@ -163,7 +163,7 @@ def test_nothing_ends_a_state_in_which_nothing_moves(moves):
     assert still[at.MODE] == at.FLIGHT and still[at.CLEAR] == INFINITE
     assert started(clearance=-0.5, box_amplitude=0.0)[at.CLEAR] == INFINITE
     still[at.EVENT_HARMONIC] = still[at.EVENT_HARMONIC + 1] = 0.1
-    assert not event_function.is_constant(still)
+    assert not event_function.is_event_function_constant(still)
     if moves:
         m = started(**APART, **{moves: 0.1 if "1" not in moves or moves == "v1_start" else -0.1})
     else:  # at a resonance, next to a wall: from rest on
@@ -176,10 +176,12 @@ def test_a_cubic_that_is_gone_is_not_read():
     m = flight(-0.5, 0.2, 0.5, -0.1, clearance=0.3)
     other = list(m)
     other[at.EVENT_CUBIC : at.EVENT_CUBIC + 4] = [1e3] * 4
-    event_function.set_node_values(other, at.RIGHT_VALUES, at.RIGHT, m[at.RIGHT_AGE])
+    event_function.write_event_values(other, at.RIGHT_VALUES, at.RIGHT, m[at.RIGHT_AGE])
     values = slice(at.RIGHT_VALUES, at.RIGHT_VALUES + 3)
     assert other[values] == m[values]
-    assert event_function.evaluate(other, 0.3) == event_function.evaluate(m, 0.3)
+    assert event_function.evaluate_event_function(
+        other, 0.3
+    ) == event_function.evaluate_event_function(m, 0.3)
 
 
 @pytest.mark.parametrize("drive", [{"box_crackle": 1e-3}, {"d1": 0.0, "box_frequency": 1.0}])
@@ -205,8 +207,8 @@ def test_both_ways_to_a_bound_of_the_sixth_derivative_agree(values, state):
     m, _ = flight_and_gap(values, state)
     both = (at.OSCILLATOR_1, at.EVENT_FREE_A), (at.OSCILLATOR_2, at.EVENT_FREE_B)
     for oscillator, free in both:
-        expected = event_function.free_bound(m, oscillator, free, 6)
-        found = event_function.sixth_bound(m, oscillator, m[free], m[free + 1])
+        expected = event_function.free_part_bound(m, oscillator, free, 6)
+        found = event_function.sixth_derivative_bound(m, oscillator, m[free], m[free + 1])
         assert found == pytest.approx(expected, rel=1e-9, abs=1e-12)
 
 
@@ -242,7 +244,7 @@ def test_it_is_the_closed_form(damping, detuning, phase, time):
 def test_value_and_derivatives_of_the_event_function(make, values, state, age):
     m, signal = make(values, state)
     node, at_node = m[at.RIGHT_AGE], m[at.RIGHT_VALUES : at.RIGHT_VALUES + 3]
-    found = event_function.evaluate(m, age)[:5]
+    found = event_function.evaluate_event_function(m, age)[:5]
     assert m[at.SECULAR] == 1.0
     rate = fastest(values)
     for order, value in enumerate(found):
@@ -258,9 +260,11 @@ def test_value_and_derivatives_of_the_event_function(make, values, state, age):
 def test_bounds_hold_as_long_as_they_are_used(make, values, state, age):
     m, signal = make(values, state)
     spacing = m[at.SPACING]
-    limits = {order: sum(event_function.derivative_bounds(m, order)) for order in (5, 6, 7, 8)}
+    limits = {
+        order: sum(event_function.event_derivative_bounds(m, order)) for order in (5, 6, 7, 8)
+    }
     sixth = m[at.REMAINDER] / m[at.HERMITE + 2]
-    fifth = event_function.evaluate(m, age)[5]
+    fifth = event_function.evaluate_event_function(m, age)[5]
     later = spacing * np.linspace(0.0, secular.LONGEST_DRIVEN, 24)
     rounding = 1e-12 * grown_size(values, age) * fastest(values) ** 8
     for order in range(1, 9):
@@ -282,11 +286,11 @@ def test_a_gap_of_nearly_equal_oscillators_is_bounded_by_its_own(state, near, ga
     values = {"k2": 1.0 + near, "d1": damping, "d2": damping * (1.0 - near), "box_frequency": 1.0}
     x1, v1, rise, speed = state
     m = flight(x1, v1, x1 + gap * rise, v1 + gap * speed, **values)
-    assert event_function.are_nearly_equal(m)
+    assert event_function.are_halves_nearly_equal(m)
     starts = (m[at.X1_START], m[at.V1_START], m[at.X2_START], m[at.V2_START])
     first, second = truth.free_motion({**DEFAULTS, **values}, starts, mp.mpf(0))
     signal = derivative(second - first, 5)
-    found, spacing = event_function.evaluate(m, age)[5], m[at.SPACING]
+    found, spacing = event_function.evaluate_event_function(m, age)[5], m[at.SPACING]
     ahead = np.linspace(0.0, event_function.AHEAD, 8)
     assert max(abs(signal(age + part * spacing)) for part in ahead) <= found
     sixth, found = signal.derivative(), m[at.REMAINDER] / m[at.HERMITE + 2]
@@ -313,7 +317,7 @@ def test_what_a_quintic_may_miss_of_a_growing_amplitude(values):
     m, signal = flight_and_gap(values, (-1e-3, 0.0, 1e-3, 0.0))
     assert m[at.SECULAR] != 0.0
     signal = derivative(signal, 5)
-    fifth, ahead = event_function.evaluate(m, 0.0)[5], 5.0 * m[at.SPACING]
+    fifth, ahead = event_function.evaluate_event_function(m, 0.0)[5], 5.0 * m[at.SPACING]
     assert 0.14 * fifth < np.abs(signal.sample(np.linspace(0.0, ahead, 50))).max() <= fifth
     signal = signal.derivative()
     found = m[at.REMAINDER] / m[at.HERMITE + 2]

@@ -54,25 +54,28 @@ def part_coefficients(quintic, s):
 def test_coefficients_of_values_and_derivatives():
     for _, quintic, b in quintics(1, 200):
         m = interval(quintic, 0.125)
-        assert hermite.present_coefficients(m, 0.0) == pytest.approx(b, abs=1e-12)
+        assert hermite.interval_coefficients(m, 0.0) == pytest.approx(b, abs=1e-12)
         lowered = b - np.array([0.0, 0.0, 0.25, 0.25, 0.0, 0.0])
-        assert hermite.present_coefficients(m, 0.25) == pytest.approx(lowered, abs=1e-12)
+        assert hermite.interval_coefficients(m, 0.25) == pytest.approx(lowered, abs=1e-12)
         left, right = m[at.LEFT_VALUES :][:3], m[at.RIGHT_VALUES :][:3]
-        after, before = hermite.lowest_after(m, *left, 0.25), hermite.lowest_before(m, *right, 0.25)
+        after, before = (
+            hermite.lowest_left_coefficient(m, *left, 0.25),
+            hermite.lowest_right_coefficient(m, *right, 0.25),
+        )
         assert after == pytest.approx(lowered[:3].min(), abs=1e-12)
         assert before == pytest.approx(lowered[3:5].min(), abs=1e-12)
         raised = b + np.array([0.0, 0.0, 0.125, 0.125, 0.0, 0.0])
-        assert hermite.interval_is_below(m, raised.max() + 1e-9)
-        assert not hermite.interval_is_below(m, raised.max() - 1e-9)
+        assert hermite.is_interval_below(m, raised.max() + 1e-9)
+        assert not hermite.is_interval_below(m, raised.max() - 1e-9)
 
 
 def test_each_coefficient_counts_for_having_no_root():
     for k in range(6):
         b = [1.0] * 6
         b[k] = 0.0
-        assert hermite.has_no_root(*b) == (k < 5)
+        assert hermite.excludes_root(*b) == (k < 5)
         b[k] = -1e-9
-        assert not hermite.has_no_root(*b)
+        assert not hermite.excludes_root(*b)
 
 
 def test_a_part_is_clear_where_its_coefficients_are():
@@ -82,7 +85,7 @@ def test_a_part_is_clear_where_its_coefficients_are():
         part = part_coefficients(quintic, s)
         lowest = min(part)
         if abs(lowest) > 1e-12:
-            assert hermite.part_is_clear(*b, s) == (lowest >= 0.0)
+            assert hermite.is_part_clear(*b, s) == (lowest >= 0.0)
             clear += lowest >= 0.0
     assert 100 < clear < 900
 
@@ -96,7 +99,7 @@ def test_the_clear_part_ends_closely_before_the_last_root():
         falling = np.sort(rng.normal(size=6))[::-1]
         if falling[0] > 0.0 > falling[-1]:
             root = S[np.argmax(of_bernstein(falling)(S) <= 0.0)]
-            part, crossing = hermite.clear_part(*falling), hermite.last_crossing(*falling)
+            part, crossing = hermite.clear_part(*falling), hermite.point_before_last_root(*falling)
             assert part < root and part in (0.0, crossing)
             tried += 1
             short += [root - part] if part else []
@@ -123,7 +126,7 @@ def test_no_summit_is_overlooked_and_a_clear_slope_is_seen(sign):
         a = float(rng.uniform(0.0, 1.0))
         z = a + (1.0 - a) * float(rng.uniform(0.0, 1.0)) ** 2
         slope = (tilted + sign * 40.0 * low * bump).deriv()(a + (z - a) * S)
-        summit = hermite.has_summit(m, 2.0 + H * a, 2.0 + H * z)
+        summit = hermite.may_have_summit(m, 2.0 + H * a, 2.0 + H * z)
         assert summit or slope.min() > 0.0 or slope.max() < 0.0
         length, third = z - a, 60.0 * np.abs(np.diff(b, 3)).max() + 240.0 * low
         change = (abs(tilted.deriv(2)(a)) + 15.0 * low + 0.5 * third * length) * length
@@ -139,7 +142,7 @@ def test_a_line_has_no_summit_where_it_is_steeper_than_what_may_be_missed(length
     missed = 28800.0 * (math.sqrt(5.0) / 30000.0 + length / 1920.0 + 0.5 * length**2 / 120.0)
     for part, summit in ((0.99, True), (1.01, False)):
         m = interval(Polynomial([1.0, part * missed]), 1.0)
-        assert hermite.has_summit(m, 2.0, 2.0 + H * length) == summit
+        assert hermite.may_have_summit(m, 2.0, 2.0 + H * length) == summit
 
 
 AGES = st.lists(st.floats(0.0, 300.0), min_size=2, max_size=8)

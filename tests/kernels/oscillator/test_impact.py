@@ -10,7 +10,7 @@ from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.impact import (
     chattering_ends,
     common_velocity,
-    count_impact,
+    record_impact,
     restitution_coefficient,
     velocities_after_impact,
 )
@@ -45,7 +45,7 @@ def test_momentum_restitution_and_energy(mu, e, slope, v1, v2):
     w1, w2 = velocities_after_impact(m, v1, v2, now)
     assert w1 + mu * w2 == pytest.approx(v1 + mu * v2, abs=4e-15 * (1.0 + mu) * speed)
     assert w2 - w1 == pytest.approx(now * closing, abs=4e-15 * speed)
-    count_impact(m, 0.0, closing, now, False)
+    record_impact(m, 0.0, closing, now, False)
     lost = kinetic(m, v1, v2) - kinetic(m, w1, w2)
     assert m[at.IMPACT_ENERGY] == pytest.approx(lost, abs=1e-13 * kinetic(m, speed, speed))
     assert lost >= -1e-13 * kinetic(m, speed, speed)
@@ -68,7 +68,7 @@ def test_a_faster_impact_parts_faster_by_a_smaller_coefficient(e, slope, one, tw
 def test_sticking_keeps_momentum_and_loses_the_closing_energy(mu, v1, v2):
     m = structure(mu, 0.7)
     common = common_velocity(m, v1, v2)
-    count_impact(m, 0.0, v1 - v2, 0.7, True)
+    record_impact(m, 0.0, v1 - v2, 0.7, True)
     assert m[at.STICKING_ENERGY] == pytest.approx(0.49 * m[at.IMPACT_ENERGY], rel=1e-14)
     speed = abs(v1) + abs(v2)
     assert (1.0 + mu) * common == pytest.approx(v1 + mu * v2, abs=4e-15 * (1.0 + mu) * speed)

@@ -11,7 +11,7 @@ import pytest
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import motion, stepper
-from fmu_src.kernels.oscillator.event_function import evaluate, event_rounding
+from fmu_src.kernels.oscillator.event_function import evaluate_event_function, event_rounding
 from tests import exact_motion as truth
 from tests.fmu.event_driven import CONTACT, Motion
 from tests.fmu.test_forces import KINDS, drawn
@@ -104,7 +104,7 @@ def test_a_brief_contact_ends_where_newton_has_it(values):
     x, v = values.pop("start", (0.0, 0.0))
     m = started(**values)
     m[at.MODE] = at.CONTACT
-    motion.begin_common(m, at.CONTACT, x, v)
+    motion.begin_contact_or_glued(m, at.CONTACT, x, v)
     exact, _ = truth.contact_motion(values, x, v, mp.mpf(values["phase_start"]))
     speed = exact.derivative()
     for age in (0.95e-6, 1e-8):
@@ -152,7 +152,7 @@ def test_a_short_flight_is_certain_and_stays_inside_the_stroke(
     monkeypatch, duration, limit, is_short
 ):
     m = started(**STARTS)
-    monkeypatch.setattr(motion, "required_order", lambda *given: 8)
+    monkeypatch.setattr(motion, "required_series_order", lambda *given: 8)
     monkeypatch.setattr(motion, "short_flight_duration", lambda *given: duration)
     m[at.LIMIT] = limit * 0.25  # of a gap velocity of 0.25
     motion.begin_after_impact(m, 0.1, -0.1, 0.15)
@@ -163,13 +163,13 @@ def test_a_short_flight_is_certain_and_stays_inside_the_stroke(
 def test_a_start_at_rest_leaves_the_boundary_by_half_of_what_its_bound_allows(order):
     """There its first derivative that does not vanish makes twice as much as the bound takes."""
     m = started(**STARTS)
-    bound = motion.derivative_bound(m, order + 1)
+    bound = motion.event_derivative_bound(m, order + 1)
     value = 1e-3 * bound * m[at.RIGHT_AGE]
     motion.leave_boundary(m, order, value)
     step = m[at.CLEAR]
     grown, taken = (s / math.factorial(k) for k, s in power_terms(step, order, value, bound))
     assert 0.0 < step < m[at.RIGHT_AGE] and taken == pytest.approx(0.5 * grown, abs=0.0)
-    assert motion.grown_to(step, order, value) == pytest.approx(grown + taken, abs=0.0)
+    assert motion.bound_after_step(step, order, value) == pytest.approx(grown + taken, abs=0.0)
     m[at.LIMIT] = 0.5 * (grown + taken)
     motion.leave_boundary(m, order, value)
     assert m[at.CLEAR] == 0.5 * step  # within the stroke
@@ -188,7 +188,7 @@ def test_masses_that_touch_at_a_start_are_where_they_are_put():
 def test_a_stroke_of_a_million_roundings_of_the_gap_is_wide_enough(part, narrow):
     m = started(**STARTS, stroke=2.0)
     m[at.LIMIT] = 1e6 * event_rounding(m, 0.0) * part
-    motion.open_flight(m, *STATE, 0.7)
+    motion.set_flight(m, *STATE, 0.7)
     assert m[at.NARROW] == narrow
 
 
@@ -197,12 +197,12 @@ def test_a_flight_begins_with_the_second_derivative_of_its_gap(monkeypatch, clea
     """Its first certified step hangs on it: as the closed form has it."""
     told = []
     monkeypatch.setattr(motion, "skip_clear_start", lambda m, *slopes: told.append(slopes) or True)
-    monkeypatch.setattr(motion, "required_order", lambda *given: 0)
+    monkeypatch.setattr(motion, "required_series_order", lambda *given: 0)
     m = started(**STARTS, clearance=clearance, d1=0.3, d2=0.7)
     motion.begin_flight(m, *STATE, 0.7 + clearance)
-    assert m[at.LEFT_VALUES + 2] == pytest.approx(evaluate(m, 0.0)[2], rel=1e-12)
+    assert m[at.LEFT_VALUES + 2] == pytest.approx(evaluate_event_function(m, 0.0)[2], rel=1e-12)
     motion.begin_after_impact(m, 0.1, -0.1, 0.4)
-    assert told == [pytest.approx(evaluate(m, 0.0)[1:3], rel=1e-12)]
+    assert told == [pytest.approx(evaluate_event_function(m, 0.0)[1:3], rel=1e-12)]
     angle = 2.0 * math.pi * (m[at.TURN] + m[at.ETA_TURNS] * 0.3)
     for m[at.SERIES] in (0.0, 8.0):  # of a short flight the phase is its own too
         found = motion.state_and_phase_at(m, 0.3)
@@ -215,7 +215,7 @@ def test_which_derivative_leaves_the_boundary(monkeypatch):
     told, slopes, m = [], [], started(**STARTS)
     monkeypatch.setattr(motion, "leave_boundary", lambda m, *given: told.append(given))
     for value in (0.5, -0.5):
-        monkeypatch.setattr(motion, "first_nonzero_derivative", lambda *_, v=value: (1, v))
+        monkeypatch.setattr(motion, "first_nonzero_force_derivative", lambda *_, v=value: (1, v))
         motion.begin_touching_state(m, 0.1, 0.2, 0.2, 0)
     assert told == [(3, 0.5), (1, 0.5)]
     monkeypatch.undo()
@@ -223,7 +223,7 @@ def test_which_derivative_leaves_the_boundary(monkeypatch):
     m = started(**STARTS)
     for order in (1, 2):
         motion.leave_boundary(m, order, 0.25)
-    assert slopes == [(0.25, evaluate(m, 0.0)[2]), (0.0, 0.25)]
+    assert slopes == [(0.25, evaluate_event_function(m, 0.0)[2]), (0.0, 0.25)]
 
 
 @pytest.mark.parametrize(

@@ -11,10 +11,14 @@ from hypothesis import strategies as st
 
 from fmu_src.kernels.numerics.elementary import TWO_PI, sincos_turns
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.excitation import set_cubic_response, set_harmonic
+from fmu_src.kernels.oscillator.excitation import set_cubic_response, set_forced_amplitudes
 from fmu_src.kernels.oscillator.nodes import free_part_after
-from fmu_src.kernels.oscillator.parameters import set_oscillator
-from fmu_src.kernels.oscillator.response import displacement, fundamental_solutions, set_free
+from fmu_src.kernels.oscillator.parameters import set_oscillator_constants
+from fmu_src.kernels.oscillator.response import (
+    displacement_and_velocity,
+    fundamental_solutions,
+    set_free_part,
+)
 from tests import exact_motion as truth
 
 from .kernel import examples, sizes
@@ -30,23 +34,23 @@ FORCING |= {"box_snap": 0.1, "box_crackle": 0.05}
 def oscillator(damping, omega_squared, x, v, phase):
     """A memory whose first branch is one oscillator with omega = 1, from initial conditions."""
     m = [0.0] * at.SIZE
-    set_oscillator(m, BRANCH, damping, omega_squared)
+    set_oscillator_constants(m, BRANCH, damping, omega_squared)
     m[at.ETA], m[at.TURN] = FORCING["box_frequency"], phase / TWO_PI
     m[BRANCH + at.DRIVE + 1] = FORCING["box_amplitude"] * FORCING["box_frequency"] ** 2
     for i, name in enumerate(("acceleration", "jerk", "snap", "crackle")):
         m[at.CUBIC + i] = -FORCING[f"box_{name}"]
-    assert not set_harmonic(m, BRANCH, HARMONIC)
+    assert not set_forced_amplitudes(m, BRANCH, HARMONIC)
     m[at.CUBIC_PRESENT] = 1.0
     m[BRANCH + at.SHARES] = 1.0
     set_cubic_response(m, BRANCH, CUBIC)
-    set_free(m, HARMONIC, FREE, CUBIC, x, v, *sincos_turns(m[at.TURN]))
+    set_free_part(m, HARMONIC, FREE, CUBIC, x, v, *sincos_turns(m[at.TURN]))
     return m
 
 
 def state(m, tau):
     x, v = free_part_after(m, BRANCH, m[FREE], m[FREE + 1], tau)
     sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA] / TWO_PI * tau)
-    return displacement(m, HARMONIC, CUBIC, tau, x, v, sine, cosine)
+    return displacement_and_velocity(m, HARMONIC, CUBIC, tau, x, v, sine, cosine)
 
 
 @examples(150)
@@ -83,7 +87,7 @@ def test_in_high_precision(ratio, omega_squared, x, v, phase, tau):
 @example(1.0328, 1.0, 8.0)
 def test_envelope_bounds_the_basis(ratio, omega_squared, age):
     m = [0.0] * at.SIZE
-    set_oscillator(m, BRANCH, ratio * math.sqrt(omega_squared), omega_squared)
+    set_oscillator_constants(m, BRANCH, ratio * math.sqrt(omega_squared), omega_squared)
     tau = age / math.sqrt(omega_squared)
     C, S, decay = fundamental_solutions(m, BRANCH, tau)
     room = 1.0 + 1e-12

@@ -8,8 +8,16 @@ from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import nodes, stepper
-from fmu_src.kernels.oscillator.event_function import evaluate, event_rounding, set_node_values
-from fmu_src.kernels.oscillator.roots import cross_clear_intervals, value_on_decided_side, walk
+from fmu_src.kernels.oscillator.event_function import (
+    evaluate_event_function,
+    event_rounding,
+    write_event_values,
+)
+from fmu_src.kernels.oscillator.roots import (
+    cross_clear_intervals,
+    value_on_decided_side,
+    walk_to_event,
+)
 from tests import exact_motion as truth
 
 from .kernel import (
@@ -34,7 +42,7 @@ def first_end(m, horizon):
 def walk_to(m, age, limit=1e5):
     """The memory, walked to an age by a number of evaluations at most."""
     m[at.WORK], m[at.WORK_LIMIT] = 0.0, limit
-    walk(m, age)
+    walk_to_event(m, age)
     assert limit < 1e5 or m[at.WORK] < limit
     return m
 
@@ -126,9 +134,9 @@ def test_the_walk_leaves_what_a_look_up_leaves(values):
         assert m[at.WORK] == m[at.NODE] - reached
         reached, other = m[at.NODE], list(m)
         nodes.start_nodes(other)
-        nodes.seek_interval(other, age)
-        set_node_values(other, at.LEFT_VALUES, at.LEFT, other[at.LEFT_AGE])
-        set_node_values(other, at.RIGHT_VALUES, at.RIGHT, other[at.RIGHT_AGE])
+        nodes.move_to_interval_at(other, age)
+        write_event_values(other, at.LEFT_VALUES, at.LEFT, other[at.LEFT_AGE])
+        write_event_values(other, at.RIGHT_VALUES, at.RIGHT, other[at.RIGHT_AGE])
         assert m[at.NODE : at.RIGHT_VALUES + 3] == other[at.NODE : at.RIGHT_VALUES + 3]
 
 
@@ -153,7 +161,7 @@ def test_a_state_is_written_anew_after_its_nodes_and_a_step_ends_with_its_work()
     assert m[at.NODE] == 5.0 and m[at.END_KIND] == at.END_OPEN
     other = flight(-0.5, 0.2, 0.5, -0.1, **FREE[0])
     other[at.WORK], other[at.WORK_LIMIT] = 3.0, 5.0
-    walk(other, 1e6)
+    walk_to_event(other, 1e6)
     assert other[at.NODE] == 2.0
     walk_to(m, 1e6)
     assert m[at.END_KIND] == at.END_RENEWAL
@@ -183,7 +191,7 @@ def test_no_interval_that_rises_above_the_ceiling_is_crossed_unseen(values):
 def test_the_side_at_the_boundary_is_kept_up_to_rounding_and_until_it_crosses():
     m = flight(-0.5, 0.2, 0.5, -0.1)
     floor = event_rounding(m, 0.3)
-    assert 1e-15 < floor < 1e-13 and evaluate(m, 0.3)[0] > floor
+    assert 1e-15 < floor < 1e-13 and evaluate_event_function(m, 0.3)[0] > floor
     kept, slope = 2.0 * floor, -1e6 * floor
     for h0, h1, value in (
         *((-0.9 * floor, 0.0, kept), (-1.1 * floor, 0.0, -1.1 * floor), (0.0, 1.0, kept)),

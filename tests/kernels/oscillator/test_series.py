@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import series
-from fmu_src.kernels.oscillator.event_function import evaluate
+from fmu_src.kernels.oscillator.event_function import evaluate_event_function
 from fmu_src.kernels.oscillator.motion import state_at
 from fmu_src.kernels.oscillator.parameters import SAME
 from tests import exact_motion as truth
@@ -64,7 +64,7 @@ def test_a_short_flight_is_that_of_the_gap(values, x, v, slope):
         for part in (0.1, 0.5, 0.9, 1.0):
             tau = mp.mpf(part * end)
             bound = 1e-13 * (slope + terms * tau) * tau + 4.0 * start
-            h0, h1, h2, *_ = evaluate(m, float(tau))
+            h0, h1, h2, *_ = evaluate_event_function(m, float(tau))
             assert abs(h0 - gap(tau)) <= bound
             assert abs(h1 - closing(tau)) <= 1e-12 * (slope + terms)
             assert abs(h2 - curvature(tau)) <= 1e-12 * (slope + abs(curvature(0)) + terms)
@@ -114,7 +114,7 @@ def test_a_gap_that_may_not_be_concave_is_walked(third, fourth, fifth):
     m[at.SERIES_GAP + 8] = fourth * 2.0 * bend / longest**2
     for more, walked in ((-0.03, False), (0.03, True)):
         bound = (fifth + more) * 6.0 * bend / longest**3
-        with patch.object(series, "fifth_bound", lambda _, size=bound: size):
+        with patch.object(series, "fifth_derivative_bound", lambda _, size=bound: size):
             assert (series.short_flight_duration(m, 8) == 0.0) == walked
 
 
@@ -125,8 +125,8 @@ def test_the_order_of_a_series_goes_by_the_flights_angle(angle, order):
     """Of the fastest change over twice the way to its summit; none if it is not pulled back."""
     m = flight(0.1, 0.0, 0.1, 1.0, box_frequency=1.7)
     assert m[at.RATE] == 1.7
-    assert series.required_order(m, 0.5, -1.7 / angle) == order
-    assert series.required_order(m, 0.5, 0.0) == 4
+    assert series.required_series_order(m, 0.5, -1.7 / angle) == order
+    assert series.required_series_order(m, 0.5, 0.0) == 4
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -156,6 +156,6 @@ def test_all_that_moves_the_masses_raises_the_bound(sign, force):
             if at.CUBIC <= slot < at.CUBIC + 4:
                 other[at.CUBIC : at.CUBIC + 4] = [0.0] * 4
             other[slot] = size if slot == at.SERIES_GAP + 2 else sign * size  # it opens
-            bounds.append(series.fifth_bound(other))
+            bounds.append(series.fifth_derivative_bound(other))
         for low, high in zip(bounds, bounds[1:], strict=False):
             assert 9.8 * part <= (high - low) / rate**4 <= 10.1 * part, slot

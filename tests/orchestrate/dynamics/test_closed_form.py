@@ -15,11 +15,11 @@ from orchestrate.fmu.c_library import load_loop
 from orchestrate.model import Excitation, Structure
 
 ENTRIES = {
-    "find_flows": (orbits.flow, 2, 8),
-    "find_steady": (orbits.steady, 2, 4),
-    "find_rates": (orbits.field, 6, 4),
-    "find_motion": (orbits.motion, 7, 8),
-    "find_segments": (orbits.segments, 7, 44),
+    "find_flows": (orbits.write_free_flows, 2, 8),
+    "find_steady": (orbits.write_steady_states, 2, 4),
+    "find_rates": (orbits.write_rates_of_states, 6, 4),
+    "find_motion": (orbits.write_later_states, 7, 8),
+    "find_segments": (orbits.write_segment_equations, 7, 44),
 }
 
 

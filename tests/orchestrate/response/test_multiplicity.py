@@ -35,11 +35,11 @@ def decide(samples, frequency=1.0, gap=1.0):
     memory = [0.0] * repetition.memory_size(count)
     memory[: repetition.MULTIPLICITY] = count, frequency, gap, TOLERANCE
     memory[repetition.HEAD : repetition.HEAD + samples.size] = samples.ravel()
-    repetition.decide(memory, 0.0)
+    repetition.write_decided_multiplicity(memory, 0.0)
     compiled = call_repetition_kernel("decide_multiplicity", samples, (frequency, gap, TOLERANCE))
     found = Decision(*(int(compiled[i]) for i in (repetition.MULTIPLICITY, repetition.DECIDED)))
     assert found == (memory[repetition.MULTIPLICITY], memory[repetition.DECIDED])
-    repetition.repeat(memory, 0.0)
+    repetition.write_least_multiplicity(memory, 0.0)
     repeated = memory[repetition.MULTIPLICITY], memory[repetition.DEVIATION]
     assert find_repetition(samples, frequency, gap, TOLERANCE) == repeated
     return found
@@ -119,7 +119,7 @@ def test_deviations_and_spreads_are_numpys(n, more, seed):
     assert repetition.measure_deviations(m, n) == away.max()
     assert m[int(m[repetition.AWAY]) :][: count - n] == away.tolist()
     some = max(1, (count - n) // 2)
-    assert repetition.growth_ratio(m, count - n) == away[-some:].max() / away[:some].max()
+    assert repetition.deviation_growth(m, count - n) == away[-some:].max() / away[:some].max()
     assert repetition.spread_over_returns(m, 0, count, n) == spread(run, n)
     if 4 * n <= half:
         late, early = spread(run[:, count - half :], n), spread(run[:, :half], n)
@@ -127,7 +127,7 @@ def test_deviations_and_spreads_are_numpys(n, more, seed):
     parts = [part.max() for part in np.array_split(away, 5) if len(part)]
     if 4 * n > half:
         dies = len(away) >= 5 and (np.diff(parts) < 0.0).all()
-        expected = repetition.growth_ratio(m, count - n) if dies else 1.0
+        expected = repetition.deviation_growth(m, count - n) if dies else 1.0
         assert repetition.contraction_ratio(m, n) == expected
 
 
@@ -151,7 +151,7 @@ def test_a_ratio_to_nothing_is_none(early, late):
     run[0, 1:5], run[0, 5:] = early * np.arange(1.0, 5.0), 4.0 * early + late * np.arange(1.0, 5.0)
     m = scaled(run)
     repetition.measure_deviations(m, 1)
-    assert repetition.growth_ratio(m, 8) == 1.0
+    assert repetition.deviation_growth(m, 8) == 1.0
     assert early or repetition.contraction_ratio(scaled(run[:, :1].repeat(20, axis=1)), 1) == 1.0
 
 
@@ -159,7 +159,7 @@ def test_a_ratio_to_nothing_is_none(early, late):
     ("growth", "more"), [(1.051, False), (1.0515, True), (1 / 1.051, False), (1 / 1.0515, True)]
 )
 def test_what_is_more_than_chance(growth, more):
-    assert repetition.changes(growth) == more
+    assert repetition.is_beyond_chance(growth) == more
 
 
 @pytest.mark.parametrize("ratio", [0.5, 0.79, 0.81])
@@ -170,7 +170,7 @@ def test_what_is_left_of_a_deviation_that_dies_is_a_geometric_series(ratio):
     run[2] = steps[:80]
     moved = 1.0 - steps[80]  # what is left after as long again and again is that part of it
     left = moved * sum(steps[80] ** k for k in range(1, 400)) if ratio < 0.8 else np.inf
-    assert repetition.remaining_change(scaled(run), 1, moved) == pytest.approx(left)
+    assert repetition.estimate_remaining_drift(scaled(run), 1, moved) == pytest.approx(left)
 
 
 @pytest.mark.parametrize(
@@ -231,7 +231,7 @@ def test_the_nearest_state_is_numpys(seed):
     m[: repetition.MULTIPLICITY] = 9, frequency, gap, TOLERANCE
     m[repetition.GIVEN : repetition.HEAD] = given.tolist()
     m[repetition.HEAD : repetition.HEAD + 36] = states.ravel().tolist()
-    repetition.nearest(m, 0.0)
+    repetition.write_nearest_state(m, 0.0)
     unit = np.array([1.0, 1.0, frequency, frequency])
     sized, other = states / unit, given / unit
     size, rates = np.abs(sized).max(), sized[:, 3] - sized[:, 2]
@@ -248,7 +248,7 @@ def test_a_gap_below_a_millionth_of_the_motion_is_as_large(gap, counts):
     m = [0.0] * repetition.memory_size(2)
     m[: repetition.MULTIPLICITY] = 2, 1.0, gap, TOLERANCE
     m[repetition.HEAD : repetition.HEAD + 4] = 1.0, 1.0, 0.0, 0.0
-    repetition.scale(m, 0)
+    repetition.write_scaled_states(m, 0)
     assert m[repetition.SIZE_OF_GAP] == (gap if counts else 2.0**-20)
     assert m[repetition.AWAY] == len(m) - 2  # deviations are the last row
 
@@ -349,7 +349,7 @@ def test_impacts_of_all_samples_are_those_of_the_response(found, impacts, n, sam
     memory[repetition.COUNT], memory[repetition.MULTIPLICITY] = 200, n
     memory[repetition.IMPACTS], memory[repetition.OWN_IMPACTS] = found, impacts
     memory[repetition.DECIDED] = REPEATED
-    repetition.confirm(memory, 0.0)
+    repetition.confirm_by_impacts(memory, 0.0)
     assert memory[repetition.DECIDED] == (REPEATED if same else UNDECIDED)
 
 
@@ -377,5 +377,5 @@ def test_a_spiral_that_shrinks_is_not_irregular(halving, turn, expected):
 def test_irregular_motions_have_impacts(found, expected):
     memory = [0.0] * repetition.memory_size(200)
     memory[repetition.IMPACTS], memory[repetition.DECIDED] = found, IRREGULAR
-    repetition.confirm(memory, 0.0)
+    repetition.confirm_by_impacts(memory, 0.0)
     assert (memory[repetition.MULTIPLICITY], memory[repetition.DECIDED]) == expected
