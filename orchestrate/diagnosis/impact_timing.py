@@ -59,7 +59,7 @@ class TimingSettings:
     order2: float = 0.025  # parts of some percent of the mass make 0.014, a stop 0.022
     # growth of the stiffness over order 2, from rest: faces make up to 0.2, halves of which one is
     # slow up to 1.5, at the stroke's end; stops 0.45 or more. From shut faces stops make -0.2 or
-    # more, such halves less. Clamps: -0.18 before `at_end` (faces -0.09) or an order 2 of 0.5 (0.37)
+    # more, such halves less. Clamps: -0.18 before `at_end` (faces -0.09), order 2 of 0.5 (0.37)
     softens: float = -0.13
     lifts: float = 0.43
     at_end: float = 0.8

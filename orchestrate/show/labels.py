@@ -186,7 +186,9 @@ def excitation_texts(data: xr.Dataset, parameters: Mapping[str, float]) -> dict[
 def is_paper_amplitude(data: xr.Dataset, parameters: Mapping[str, float]) -> bool:
     """Return whether the amplitude is 1/eta^2 m, so that displacements are the paper's ratios."""
     eta = parameters.get("eta", parameters.get("frequency", math.nan) / omega_of(data))
-    return shows_lengths_as_ratios(data) and math.isclose(parameters["amplitude"] * eta**2, 1.0, rel_tol=1e-9)
+    return shows_lengths_as_ratios(data) and math.isclose(
+        parameters["amplitude"] * eta**2, 1.0, rel_tol=1e-9
+    )
 
 
 def format_level(data: xr.Dataset, level: float) -> str:
