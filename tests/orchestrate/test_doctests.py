@@ -15,7 +15,7 @@ MODULES = [
     if ">>> " in path.read_text(encoding="utf-8")
 ]
 LONG = {
-    *(f"orchestrate.diagnosis.{name}" for name in ("detect", "fit", "signs")),
+    *(f"orchestrate.diagnosis.{name}" for name in ("detect", "fit", "plan_test", "signs")),
     *(f"orchestrate.dynamics.{name}" for name in ("borders", "orbits", "branches", "manifolds")),
     *("orchestrate.dynamics.stable_windows", "orchestrate.show.report"),
     "orchestrate.laboratory.record_of_run",
