@@ -1,15 +1,13 @@
 """A beam of one's own on the page: its numbers, what is wrong with them, commands."""
 
 import json
-import os
-import subprocess
-import sys
-from pathlib import Path
+import shlex
 
 import pytest
 import xarray as xr
 
 import orchestrate
+from orchestrate import cli
 
 from ...sparing import ordinary
 from .conftest import READY, typed
@@ -17,18 +15,25 @@ from .conftest import READY, typed
 DIAGRAM = "explorer.regions.diagram"
 
 
-def pasted(command, folder):
-    """The results that a command writes when it is pasted into a shell, in order of their names."""
-    folder.mkdir()
-    programs = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    surroundings = os.environ | {
-        "PATH": programs,
-        "PYTHONPATH": str(Path(orchestrate.__file__).parents[1]),
-    }
-    shell = {"input": command, "cwd": folder, "env": surroundings}
-    done = subprocess.run(["sh", "-e"], **shell, capture_output=True, text=True)
-    assert done.returncode == 0, (command, done.stderr)
-    return [xr.load_dataset(file) for file in sorted(folder.rglob("*.nc"))]
+@pytest.fixture
+def pasted(tmp_path, monkeypatch):
+    """The results that commands write when they are pasted into a shell, in order of their names;
+    the shell is this process.
+    """
+
+    def run(commands, name):
+        folder = tmp_path / name
+        folder.mkdir()
+        monkeypatch.chdir(folder)
+        for line in commands.splitlines():
+            words = shlex.shlex(line, posix=True, punctuation_chars=True)
+            words.whitespace_split = True
+            python, flag, what, *options = words
+            assert (python, flag, what) == ("python", "-m", "orchestrate") or flag == "-c", line
+            assert exec(what) is None if flag == "-c" else cli.main(options) == 0
+        return [xr.load_dataset(file) for file in sorted(folder.rglob("*.nc"))]
+
+    return run
 
 
 def own(browser):
@@ -58,16 +63,19 @@ SHOWN = {  # states of the page: a link's words, and what is done then
 
 
 @pytest.mark.parametrize("name", ordinary(SHOWN, ["in mm"]))
-def test_every_command_that_the_page_shows_runs_when_it_is_pasted(browser, page, tmp_path, name):
-    fragment, done = SHOWN[name]
+def test_every_command_that_the_page_shows_runs_when_it_is_pasted(chromium, page, pasted, name):
+    browser, (fragment, done) = chromium, SHOWN[name]
     browser.open(page, fragment)
     browser.until(READY)
     browser.run(done)
     browser.until(READY)
-    (motion,) = pasted(browser.text("motion-command"), tmp_path / "motion")
+    (motion,) = pasted(browser.text("motion-command"), "motion")
     states = browser.numbers("explorer.inspector.found.motion.states").reshape(-1, 4)
-    assert states[:, 1].tobytes() == motion.x2.values.tobytes()
-    results = pasted(browser.text("command"), tmp_path / "sweep")
+    for column, variable in zip(states.T, ("x1", "x2", "v1", "v2"), strict=True):
+        assert column.tobytes() == motion[variable].values.tobytes()
+    times = browser.numbers("explorer.inspector.found.motion.impactTime")
+    assert times.tobytes() == motion.impact_time.values.tobytes()
+    results = pasted(browser.text("command"), "sweep")
     lanes = browser.run(f"return {DIAGRAM}.lanes.map((lane) => lane.direction)")
     for number, way in enumerate(lanes):
         found = f"{DIAGRAM}.lanes[{number}].found.flatMap((one) => Array.from(one.gaps))"
@@ -78,6 +86,7 @@ def test_every_command_that_the_page_shows_runs_when_it_is_pasted(browser, page,
             if one.attrs["direction"] in (way, "both")
         ]
         assert [one.xi_rel.values.tobytes() for one in theirs] == [mine]
+    assert browser.console() == []
 
 
 def test_a_wall_a_play_and_forces_are_chosen_by_hand(browser):
