@@ -1,10 +1,12 @@
 """What ``dynamics`` and ``weak_drive`` decide, as JSON: run with kernels of several processors.
 
-``python -m tests.orchestrate.processor_answers`` prints the kernels of the linear algebra in
-use, and the answers: numbers of points, ends, kinds and stability as they are, places as numbers.
+``python -m tests.orchestrate.processor_answers NAME ...`` prints the kernels of the linear algebra
+in use, and some of the answers: numbers of points, ends, kinds and stability as they are, places as
+numbers.
 """
 
 import json
+import sys
 
 import numpy as np
 import scipy.linalg  # noqa: F401  (SciPy has linear algebra of its own)
@@ -59,9 +61,15 @@ def of_the_averaged_theory(count):
     return {"decided": kinds, "places": [place.eta0 for places in found for place in places]}
 
 
+ANSWERS = {
+    "branch": lambda: of_an_orbit_branch((0.79, 0.8)),
+    "rig": lambda: of_a_drive(RIG),
+    "averaged": lambda: of_the_averaged_theory(2),
+}
+
+
 def main():
-    answers = {"branch": of_an_orbit_branch((0.79, 0.8)), "rig": of_a_drive(RIG)}
-    answers["averaged"] = of_the_averaged_theory(2)
+    answers = {name: ANSWERS[name]() for name in sys.argv[1:]}
     print(json.dumps({"kernels": kernels(), "answers": answers}, default=np.ndarray.tolist))
 
 

@@ -33,7 +33,7 @@ def record(orders, noise=0.0, down=False, level=1.0, **others):
 
 def signs(*records, channel="acceleration1", **settings):
     first, *others = records
-    answer = orchestrate.signs(first, other=others or None, seeds=2, **settings)
+    answer = orchestrate.signs(first, other=others or None, seeds=1, **settings)
     return answer.sel(channel=channel)
 
 
