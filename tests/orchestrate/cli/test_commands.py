@@ -163,8 +163,8 @@ def test_a_command_asks_its_function_and_shows_the_answer(ask, tmp_path, monkeyp
         return calls[-1][1]
 
     monkeypatch.setattr(orchestrate, name, noted)
-    few = ("--format", "csv", *(() if command in DRAWN else ("--plot", "none")))
-    plain = ask(command, *options, *few).success().out
+    few, none = ("--format", "csv"), ("--plot", "none")
+    plain = ask(command, *options, *few, *(() if command in DRAWN else none)).success().out
     assert all(agree(question, keywords) for question, _ in calls) and bool(calls) == bool(keywords)
     stored = {path: hashlib.sha256(path.read_bytes()).digest() for path in folder.glob("*.nc")}
     for _, answer in calls:
@@ -174,7 +174,7 @@ def test_a_command_asks_its_function_and_shows_the_answer(ask, tmp_path, monkeyp
     assert bool([*folder.glob("*.png")]) == (command in DRAWN)
     tables, shown = set(folder.glob("*.csv")), plain
     if unit:
-        shown = ask(command, *options, *few, "--units", unit).success().out
+        shown = ask(command, *options, *few, *none, "--units", unit).success().out
         assert not re.search(words, plain) and "complete already" in shown
         new = set(folder.glob("*.csv")) - tables
         columns = {column for path in new for column in pd.read_csv(path).columns}

@@ -6,6 +6,7 @@ import hashlib
 import io
 import re
 from contextlib import redirect_stdout
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ import xarray as xr
 import orchestrate
 from orchestrate.cli import main, parse_arguments
 from orchestrate.cli.diagnosis import Sweep
+from orchestrate.diagnosis import settings
 
 from .commands import ROOT
 
@@ -58,21 +60,26 @@ GUESSED = (
 
 @pytest.fixture(scope="module")
 def run(exported, tmp_path_factory):
-    """The folder of a record of a beam that opens, its page, and what its diagnosis printed."""
+    """The folder of a record of a beam that opens, its page, and what its diagnosis printed.
+
+    Its searches end early.
+    """
     folder, said = tmp_path_factory.mktemp("diagnosed"), io.StringIO()
+    short = replace(settings.SETTINGS, rugged_starts=2, rounds=1, steps=5)
     halves = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 52.0, "zeta1": 0.01, "zeta2": 0.01}
     beam = orchestrate.Structure.from_halves(**halves, e=0.5)
-    sweep = orchestrate.SweptSine(first=38.0, last=58.0, duration=8.0, acceleration=4.0)
+    sweep = orchestrate.SweptSine(first=38.0, last=58.0, duration=4.0, acceleration=4.0)
     sensor = orchestrate.Sensor(bandwidth=600.0, sample_rate=1600.0, noise=3e-3, participation=1.4)
     history = orchestrate.shake(beam, sweep, sample_rate=1600.0, progress=False)
     felt = orchestrate.measure(history, sensor, excitation=sweep).drop_vars("acceleration2")
     record = str(orchestrate.write_record(felt, folder / "parted.csv"))
     (folder / "beam.toml").write_text(GUESSED)
     options = ["--structure", str(folder / "beam.toml"), "--notes", "Tested <here>"]
-    with redirect_stdout(said):
+    with redirect_stdout(said), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(settings, "SETTINGS", short)
         assert main(["diagnose", record, *options, "--output", str(folder), "--jobs", "1"]) == 0
-    page = next(folder.glob("diagnose_parted_*.html")).read_text(encoding="utf-8")
-    return folder, page, said.getvalue()
+        page = next(folder.glob("diagnose_parted_*.html")).read_text(encoding="utf-8")
+        yield folder, page, said.getvalue()
 
 
 def stored_verdict(folder):
@@ -115,7 +122,7 @@ def test_a_record_has_a_page_with_its_evidence(run):
         rows = dict(zip(cells, cells[1:], strict=False))
         assert rows["file of the record"] == "parted.csv"
         assert (rows["sampling rate"], rows["unit of its numbers"]) == ("1600 Hz", "m/s²")
-        assert rows["duration"].startswith("8") and " Hz upwards" in rows["sweep"]
+        assert rows["duration"].startswith("4") and " Hz upwards" in rows["sweep"]
         assert rows["level of the base, peak"].endswith(f" {unit}")
         assert "--notes" in rows["command that made it"]
     row = r'<td data-label="parameter">f1, [^<]*</td><td[^>]*>([\d.]+) ± ([\d.]+) Hz'

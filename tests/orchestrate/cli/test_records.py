@@ -28,13 +28,16 @@ def sweep(order_2=0.0, second=True, noise=0.0):
     return xr.Dataset(kept, {"time": time}, {"sample_rate": RATE, "title": "A sweep"})
 
 
-@pytest.fixture
-def files(tmp_path):
-    """Three records: bonded, delaminated, and measured with one accelerometer."""
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    """Records: bonded, delaminated, measured with one accelerometer, in g, and of a simulation."""
+    folder = tmp_path_factory.mktemp("records")
     records = {"bonded": sweep(), "parted": sweep(0.6), "measured": sweep(0.5, False, 0.01)}
+    records["simulated"] = records["parted"].assign(impulse=("impact", [1.0]))
     for name, record in records.items():
-        record.to_netcdf(tmp_path / f"{name}.nc")
-    return {name: tmp_path / f"{name}.nc" for name in records}
+        record.to_netcdf(folder / f"{name}.nc")
+    in_g(sweep(second=False), folder / "bench.csv")
+    return {path.stem: path for path in folder.iterdir()}
 
 
 def said(done):
@@ -84,11 +87,11 @@ def test_three_records_in_one_picture_by_the_options(ask, tmp_path, files):
 
 
 MISTAKES = """
-    FILE --beside x=lost.nc : --beside lost.nc: no such file
-    FILE --show orders --orders 2.5 : orders = 2.5: expected
-    FILE --resolution 0.001 : resolution = 0.001 Hz | parted.nc
-    FILE --from 20 : nothing between --from and --to; it has 0 to 9.999 s
-    FILE --sensor fast : --sensor fast: expected HZ or HZ:RATE
+    parted.nc --beside x=lost.nc : --beside lost.nc: no such file
+    parted.nc --show orders --orders 2.5 : orders = 2.5: expected
+    parted.nc --resolution 0.001 : resolution = 0.001 Hz | parted.nc
+    parted.nc --from 20 : nothing between --from and --to; it has 0 to 9.999 s
+    simulated.nc --sensor fast : --sensor fast: expected HZ or HZ:RATE
     bench.csv : bench.csv | no unit | --unit
     bench.csv --unit stone : unit = 'stone'
     bench.csv --unit g --columns acceleration1=9 : no column 9
@@ -98,14 +101,11 @@ MISTAKES = """
 
 @pytest.mark.parametrize("line", MISTAKES.strip().splitlines())
 def test_mistakes_are_one_line(ask, tmp_path, files, line):
-    in_g(sweep(second=False), tmp_path / "bench.csv")
     options, _, words = line.strip().partition(" : ")
-    options = options.replace("FILE", str(files["parted"]))
-    options = options.replace("bench.csv", str(tmp_path / "bench.csv"))
-    if "--sensor" in options:  # of a result of shake
-        with_impulses = xr.load_dataset(files["parted"]).assign(impulse=("impact", [1.0]))
-        with_impulses.to_netcdf(files["parted"])
-    ask("analyse", *options.split()).complaint(*(word.strip() for word in words.split("|")))
+    file, *options = options.split()
+    ask("analyse", files[file.split(".")[0]], *options).complaint(
+        *(word.strip() for word in words.split("|"))
+    )
     assert not (tmp_path / "results").exists() or not any((tmp_path / "results").iterdir())
 
 
