@@ -6,7 +6,6 @@ import pickle
 import re
 import zipfile
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 from filelock import FileLock
 
@@ -15,8 +14,8 @@ from fmu_src.export.errors import CannotExport
 from orchestrate.errors import InputError
 from orchestrate.fmu.c_library import SOURCES, find_or_compile_library
 from orchestrate.fmu.webassembly import find_or_compile_web_kernel
+from tests import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
 BUILD = ROOT / "build"
 
 

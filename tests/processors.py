@@ -10,12 +10,12 @@ import os
 import subprocess
 import sys
 import warnings
-from pathlib import Path
 
 import pytest
 
+from tests import ROOT
+
 PROBE = "import numpy as np; a = np.eye(64) + np.tri(64); np.linalg.solve(a, a)"
-ROOT = Path(__file__).parents[1]
 
 
 def surroundings(processor):

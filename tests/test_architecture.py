@@ -10,13 +10,12 @@ import functools
 import inspect
 import re
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
 import orchestrate
+from tests import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
 OURS = ("fmu_src", "orchestrate", "tools")
 FILES = sorted(
     path.relative_to(ROOT).as_posix()

@@ -5,7 +5,8 @@ import sys
 
 import pytest
 
-from .fresh import ROOT
+from tests import ROOT
+
 from .sparing import ordinary
 
 COMMANDS = {

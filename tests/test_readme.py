@@ -2,7 +2,6 @@
 
 import inspect
 import re
-from pathlib import Path
 
 import pytest
 
@@ -12,11 +11,11 @@ from fmu_src.export.sources import load_model
 from fmu_src.version import VERSION
 from orchestrate import cli
 from orchestrate.fmu import find_or_export
+from tests import ROOT
 from tools import assets
 
 from .exports import BUILD
 
-ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 TABLES = assets.TABLES.read_text(encoding="utf-8")
 COMMANDS = sorted(set(re.findall(r"python -m orchestrate (\w+)", README)))

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from .fresh import ROOT
+from tests import ROOT
 
 GITHUB = ROOT / ".github"
 

@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 
 import orchestrate
+from tests import ROOT
 from tests.faults import Surroundings
-from tests.orchestrate.cli.commands import ROOT, Done
+from tests.orchestrate.cli.commands import Done
 
 from . import archives, documents
 from .findings import expect_none

@@ -10,8 +10,9 @@ from pathlib import Path
 import fmpy
 import pytest
 
+from tests import ROOT
+
 from ..sparing import ordinary
-from .written import ROOT
 
 EXAMPLES = ROOT / "examples"
 SCRIPTS = sorted(EXAMPLES.glob("*.py"))

@@ -5,7 +5,9 @@ import runpy
 
 import pytest
 
-from .written import DOCS, ROOT
+from tests import ROOT
+
+from .written import DOCS
 
 MOST_WORDS = 1500
 GENERATED = {  # by a tool, of which each row may be looked up but none is read in turn

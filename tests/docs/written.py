@@ -5,7 +5,8 @@ import shlex
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+from tests import ROOT
+
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.glob("*.md"))]
 FENCE = re.compile(
@@ -41,11 +42,6 @@ def blocks(page: Path) -> list[Block]:
 def python_blocks(page: Path) -> list[str]:
     """Blocks of Python that the build of the manual does not run."""
     return [block.text for block in blocks(page) if block.kind == "python"]
-
-
-def cells(page: Path) -> list[str]:
-    """Code cells, which the build runs."""
-    return [block.text for block in blocks(page) if block.kind == "{code-cell}"]
 
 
 def files(page: Path) -> dict[str, str]:

@@ -2,13 +2,13 @@
 
 import doctest
 from importlib import import_module
-from pathlib import Path
 
 import pytest
 
+from tests import ROOT
+
 from ..sparing import ordinary
 
-ROOT = Path(__file__).resolve().parents[2]
 MODULES = [
     ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
     for path in sorted((ROOT / "orchestrate").rglob("*.py"))

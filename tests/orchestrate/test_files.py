@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from orchestrate.files import HeldLock, write_atomically
+from tests import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 WRITE = """
 import os, sys
 from orchestrate.files import write_atomically

@@ -3,7 +3,6 @@
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,11 +10,11 @@ import xarray as xr
 
 import orchestrate
 from orchestrate import Drive, InputError, Structure
+from tests import ROOT
 
 from ..exports import once
 from .laboratory.analysis.records import analyses
 
-ROOT = Path(__file__).resolve().parents[2]
 FUNCTIONS = (
     *("simulate", "resonance", "sweep", "map", "lyapunov", "attractors", "basin", "spectra"),
     *("impact_statistics", "poincare", "basin_entropy", "orbit", "branch", "border", "couple"),

@@ -2,9 +2,8 @@
 
 import pytest
 
+from tests import ROOT
 from tools import benchmark
-
-from ..fresh import ROOT
 
 
 @pytest.mark.slow

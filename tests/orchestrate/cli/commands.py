@@ -12,7 +12,8 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
+from tests import ROOT
+
 PATIENCE = 300.0  # s; a machine may be busy
 
 

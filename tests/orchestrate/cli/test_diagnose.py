@@ -16,8 +16,7 @@ import orchestrate
 from orchestrate.cli import main, parse_arguments
 from orchestrate.cli.diagnosis import Sweep
 from orchestrate.diagnosis import settings
-
-from .commands import ROOT
+from tests import ROOT
 
 GUESS = ROOT / "docs" / "records" / "beam.toml"
 

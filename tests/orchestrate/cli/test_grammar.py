@@ -18,8 +18,7 @@ from orchestrate.cli import grammar
 from orchestrate.cli.output import result_file_stem
 from orchestrate.errors import InputError
 from orchestrate.model.structure import Structure
-
-from .commands import ROOT
+from tests import ROOT
 
 CONVERTED = {"settle", "direction", "over", "bifurcation"}  # options in other units or words
 

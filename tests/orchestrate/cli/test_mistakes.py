@@ -14,8 +14,7 @@ import pytest
 
 from orchestrate import cli
 from orchestrate.errors import InputError
-
-from .commands import ROOT
+from tests import ROOT
 
 QUICK = ("--transient", "5", "--samples", "8")
 MISTAKES = {  # options of each command, then what its line says

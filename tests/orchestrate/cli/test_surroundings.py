@@ -13,9 +13,8 @@ from orchestrate import __main__, cli
 from orchestrate.__main__ import run_command_line
 from orchestrate.cli import main, responses
 from orchestrate.cli.safe_output import SafeStream
+from tests import ROOT
 from tests.faults import Surroundings
-
-from .commands import ROOT
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="/dev/full, limits, /proc")
 ASKED = ("sweep", "--eta", "1.2", "--transient", "5", "--samples", "2", "--plot", "none")

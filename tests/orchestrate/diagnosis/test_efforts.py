@@ -120,5 +120,5 @@ def test_settings_that_are_assumed_differ_or_are_refused():
     made = checked_settings({"steps": 1, "ratio": 0.5, "delay": 0.99e6})
     assert (made.steps, made.ratio, made.rounds) == (1, 0.5, SETTINGS.rounds)
     for wrong in ({"steps": 0.9}, {"ratio": -0.1}, {"ratio": 1.01e6}, {"rate": 2.0}):
-        with pytest.raises(InputError, match=next(iter(wrong))):
+        with pytest.raises(InputError, match=f"settings.*'{next(iter(wrong))}'"):
             checked_settings(wrong)

@@ -17,7 +17,7 @@ from orchestrate.diagnosis.multistart import Solution
 from orchestrate.diagnosis.opening_measures import measure_opening, order_2_thresholds
 from orchestrate.diagnosis.search_job import SearchJob
 from orchestrate.diagnosis.settings import SETTINGS
-from orchestrate.diagnosis.standard_errors import contact_covariance, squares_beyond_noise
+from orchestrate.diagnosis.standard_errors import contact_covariance
 from orchestrate.diagnosis.wiring import WIRING, LowResponse, is_above_floor, sensor_notes
 
 from .records import BEAM
@@ -129,6 +129,11 @@ def windows(one, other=None, noise=0.0, floor=0.0):
     )
 
 
+def even_orders_of(*sensors, **options):
+    evidence = windows(*sensors, **options)
+    return even_orders(evidence, np.zeros_like(evidence.measured))
+
+
 @pytest.mark.parametrize(
     ("noise", "floor", "order2", "seen"),
     [
@@ -138,10 +143,7 @@ def windows(one, other=None, noise=0.0, floor=0.0):
     ],
 )
 def test_each_threshold_of_order_2(noise, floor, order2, seen):
-    evidence = windows((1.0, order2), noise=noise, floor=floor)
-    assert (
-        measure_opening(evidence, np.zeros_like(evidence.measured_orders)).is_order_2_seen == seen
-    )
+    assert even_orders_of((1.0, order2), noise=noise, floor=floor).is_order_2_seen == seen
 
 
 @pytest.mark.parametrize(
@@ -155,13 +157,7 @@ def test_each_threshold_of_faces_that_move_apart(other, apart):
     """A difference in order 1 that goes to and fro is not one of gains."""
     turns = (-1.0) ** np.arange(40)
     order1 = 1.0 + (other[0] - 1.0) * turns
-    assert (face_difference_of(windows((1.0, 0.5), (order1, other[1]))) > 1.0) == apart
-
-
-def face_difference_of(evidence):
-    return measure_opening(
-        evidence, np.zeros_like(evidence.measured_orders)
-    ).largest_sensor_difference
+    assert (even_orders_of((1.0, 0.5), (order1, other[1])).largest_sensor_difference > 1.0) == apart
 
 
 def test_little_moves_below_a_tenth_of_the_largest_order_1():
@@ -248,10 +244,6 @@ def test_doubt_about_real_contacts_grows_with_what_the_contact_misses():
     for beyond, part in ((0.0225, 0.5), (0.09, 1.0), (1.0, 1.0)):  # of 0.3, squared
         found = np.sqrt(np.diag(contact_covariance(values, beyond, SETTINGS)))
         assert found == pytest.approx([part * 0.12, part * 0.02])
-    noise = 1e-3 * np.random.default_rng(1).standard_normal((2, 4, 60))
-    for squares, seen in ((1.29, False), (1.31, True)):  # over those of noise
-        residuals = math.sqrt(squares) * noise
-        assert (squares_beyond_noise(residuals, [noise], SETTINGS.noise_squares) > 0.0) == seen
 
 
 def test_dry_friction_is_viscous_below_a_hundredth_of_the_largest_speed():

@@ -1,7 +1,5 @@
 """A measured record over the page's spectrum: read by the package's reader alone."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -9,8 +7,9 @@ import orchestrate
 from orchestrate import cli
 from orchestrate.errors import InputError
 from orchestrate.explorer.measured import record_json
+from tests import ROOT
 
-RECORDS = Path(__file__).parents[3] / "docs" / "records"
+RECORDS = ROOT / "docs" / "records"
 SERIES = """
 const kept = {};
 const { inspector } = explorer;
