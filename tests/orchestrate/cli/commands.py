@@ -143,27 +143,21 @@ def wait_for(
 def below(pid: int) -> Iterator[int]:
     """Process ids of all that a process has started, and what those have."""
     for entry in Path("/proc").iterdir():
-        try:
-            if entry.name.isdigit() and parent_of(entry) == pid:
-                yield int(entry.name)
-                yield from below(int(entry.name))
-        except OSError:  # it ended while we looked
-            continue
+        if entry.name.isdigit() and status(entry.name)[1] == str(pid):
+            yield int(entry.name)
+            yield from below(int(entry.name))
 
 
-def parent_of(entry: Path) -> int:
-    """The parent of a process, from Linux's /proc."""
-    return int((entry / "stat").read_text().rpartition(")")[2].split()[1])
+def status(pid: int | str) -> list[str]:
+    """State of a process and its parent, from Linux's /proc; as dead where it has ended."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[:2]
+    except OSError:
+        return ["X", ""]
 
 
 def is_alive(pid: int) -> bool:
-    """Whether a process runs."""
-    try:
-        return (Path("/proc") / str(pid) / "stat").read_text().rpartition(")")[2].split()[
-            0
-        ] not in "ZX"
-    except OSError:
-        return False
+    return status(pid)[0] not in "ZX"
 
 
 def all_end(pids: list[int], patience: float = 20.0) -> bool:

@@ -76,9 +76,6 @@ def test_a_structure_in_si_is_told_in_hertz_and_metres():
     assert axis[-1] == pytest.approx(1.3 * 75.0 / (2.0 * np.pi))
 
 
-# -- time histories and spectra -------------------------------------------------------------------
-
-
 PAPER = Structure.nondimensional()
 BEAM = PAPER.replace(omega=75.0)
 

@@ -84,6 +84,3 @@ def test_density_of_a_sine_has_its_closed_form():
     ends = np.clip((shown.acceleration.values[:, None] + [-width / 2, width / 2]) / 3.0, -1, 1)
     expected = np.diff(np.arcsin(ends), axis=1)[:, 0] / np.pi / width
     assert np.allclose(shown.density, expected, rtol=0.02)
-
-
-# -- all analyses ---------------------------------------------------------------------------------
