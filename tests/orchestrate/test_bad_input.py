@@ -277,8 +277,6 @@ def test_a_wall_has_no_second_mass():
         refusal(lambda name=name: WALL.get(name), f"^{name}: mass 2 is a wall")
 
 
-# -- what signals, sensors, records and drives may be ----------------------------------------------
-
 PROFILE = ((20.0, 0.5), (200.0, 0.1))
 SWEEP = {"first": 20.0, "last": 90.0, "duration": 2.0, "acceleration": 4.9}
 CURVE = {"frequency": np.arange(40.0, 60.0), "level": 4.0, "amplitude1": np.ones(20)}

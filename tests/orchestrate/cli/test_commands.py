@@ -237,8 +237,6 @@ def test_what_is_trivial_or_undecided_is_said(ask, words):
     assert done.code == 0 and TRIVIAL[words] in done.out, done.err
 
 
-# -- files -----------------------------------------------------------------------------------------
-
 SWEEP = ("sweep", "--eta", "1.28:1.31:0.005", "--transient", "20", "--samples", "12")
 
 
@@ -290,8 +288,6 @@ def test_a_file_of_ones_own_is_not_replaced_by_another_question(ask, tmp_path):
         ask(*SWEEP, "--store", own, *force).complaint("mine.png", "choose another --store")
     assert fingerprint(own.parent) == {"mine.png": before["mine.png"]}
 
-
-# -- what acts, and pictures over pictures ---------------------------------------------------------
 
 OF_BOX = {name: kind for name, kind in cli.COMMANDS.items() if issubclass(kind, OfBox)}
 MORE = {

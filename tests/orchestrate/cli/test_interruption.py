@@ -55,9 +55,6 @@ def test_an_interrupted_command_says_whether_there_is_anything_to_go_on_from(
     assert capsys.readouterr().err.splitlines() == [BEGINS_ANEW]
 
 
-# -- FMUs of somebody else that crash, exit or hang ------------------------------------------------
-
-
 @pytest.fixture(scope="module")
 def bad(exported, tmp_path_factory):
     """FMUs by what they do wrong, made once."""

@@ -158,8 +158,6 @@ def test_what_is_assumed_or_implausible_is_said_in_one_line(ask, command):
     assert [warned in line for line in done.complaints] == [True] * bool(warned), done.complaints
 
 
-# -- the structure of a stored result --------------------------------------------------------------
-
 BEAM = Structure.from_file("beam")
 STORED = BEAM.replace(e=0.65)
 HERTZ = ("--over", "hz", "--limits", "14:18")

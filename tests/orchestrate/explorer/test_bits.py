@@ -1,5 +1,6 @@
 """The kernel in the page gives the bits of the FMU: the whole memory, after each period."""
 
+import math
 import struct
 
 import pytest
@@ -8,7 +9,7 @@ from orchestrate.fmu.webassembly import c_layout, find_or_compile_web_kernel
 from orchestrate.weak_drive.master import DRIVE, MOTION, Pair
 from tests.web_instance import WebInstance
 
-from .kernels import Native, period
+from ...fmu.programs.driver import open_fmu
 
 pytest.importorskip("wasmtime", reason="wasmtime runs the WebAssembly module")
 REST = {}
@@ -26,6 +27,22 @@ CASES = {  # frequency, periods, what is set
 }
 
 
+class Native:
+    """The kernel as a native FMU, driven as :class:`tests.web_instance.WebInstance` is; its saved
+    state has its whole memory.
+    """
+
+    def __init__(self, path, size):
+        self.fmu, self.size = open_fmu(path), size
+        self.begin, self.set = self.fmu.start, self.fmu.set
+
+    def bytes(self):
+        return bytes(self.fmu.save()[0])[-8 * self.size - 8 : -8]
+
+    def step(self, time, target):
+        self.fmu.call("doStep", time, target - time)
+
+
 @pytest.fixture(scope="module")
 def kernel(exported):
     return find_or_compile_web_kernel()
@@ -34,6 +51,7 @@ def kernel(exported):
 @pytest.mark.parametrize("case", CASES)
 def test_every_number_of_the_memory_is_that_of_the_fmu(kernel, exported, case):
     frequency, periods, values = CASES[case]
+    period = 2.0 * math.pi / frequency
     values = {**values, "box_frequency": frequency, "box_amplitude": 1.0 / frequency**2}
     fmu = exported / "fmi2" / "TwoMassImpactOscillator.fmu"
     web = WebInstance(kernel)
@@ -43,7 +61,7 @@ def test_every_number_of_the_memory_is_that_of_the_fmu(kernel, exported, case):
         one.set(sample_count=7)
     for n in range(periods):
         for one in both:
-            one.step(n * period(frequency), (n + 1) * period(frequency))
+            one.step(n * period, (n + 1) * period)
         mine, theirs = (one.bytes() for one in both)
         assert mine == theirs, f"period {n}: slots {differing(mine, theirs)}"
         if case == "cubic" and n == 2:  # to the value that it has

@@ -9,7 +9,7 @@ from orchestrate.explorer.page import explore
 from ...sparing import ordinary
 from .conftest import typed
 
-BEAM = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.007}
+BEAM = orchestrate.Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.007)
 SHOWN = """
 const kept = {};
 const { inspector, regions } = explorer;
@@ -35,16 +35,12 @@ def value(browser, name):
     return float(browser.get(name, "value"))
 
 
-@pytest.fixture
-def beam(exported):
-    return orchestrate.Structure.from_halves(**BEAM)
-
-
+@pytest.mark.usefixtures("exported")
 @pytest.mark.parametrize("units", ordinary(ASKED))
-def test_the_page_follows_the_units_asked_for(chromium, beam, units, tmp_path):
+def test_the_page_follows_the_units_asked_for(chromium, units, tmp_path):
     turns, lengths, pushes, times, turn, length, push = ASKED[units]
     browser = chromium
-    browser.open(explore(beam, units=units, output=tmp_path / "page.html"), whole=False)
+    browser.open(explore(BEAM, units=units, output=tmp_path / "page.html"), whole=False)
     browser.chosen()
     typed(browser, "hertz", f"{300.0 / turn:.9g}")
     typed(browser, "level", "5")

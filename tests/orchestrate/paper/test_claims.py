@@ -28,9 +28,6 @@ PRINTED = (
 ETAS = np.round(np.arange(0.1, 8.0, 0.01), 6)
 
 
-# -- the table and the rule ------------------------------------------------------------------------
-
-
 def test_claims_are_of_all_sections_with_the_numbers_that_the_paper_prints():
     table = read_claims()
     assert {claim.section for claim in table} == {"1", "2", "3", "3.1", "3.2", "4.1", "4.2", "5"}
@@ -74,9 +71,6 @@ def test_a_limit_is_read_twice(edges, exact, printed, expected, agrees):
     found, parts = limits.find_limit(data, claim, "elastic", "T/2", "upper", low)
     assert judge(parts) == expected and agrees in found
     assert f"exact: {exact:.8f} (fold of T/2)" in found
-
-
-# -- no check that cannot fail ---------------------------------------------------------------------
 
 
 def loops(count, last=0.0):
@@ -145,9 +139,6 @@ OF_SWEEPS = [
 def test_not_everything_is_borne_out_where_all_responses_are_of_one_kind(row):
     """Nothing is as in the paper there: of each claim on sweeps one of two worlds differs."""
     assert {verdict(row, world) for world in (one_kind(1, 5), one_kind(0, 3))} != {YES}
-
-
-# -- section 2 -------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

@@ -20,8 +20,6 @@ from orchestrate.show.style import XI_REL, make_panels
 
 from . import made
 
-# -- files ----------------------------------------------------------------------------------------
-
 
 def small_picture():
     """A small picture with letters, made anew."""
@@ -40,9 +38,6 @@ def test_a_picture_is_written_whole_or_not_at_all(tmp_path):
     with pytest.raises(StoreError, match=r"there\.png"):
         save(small_picture(), tmp_path / "there")
     assert [path.name for path in tmp_path.iterdir()] == ["there.png"]
-
-
-# -- lines over a parameter -----------------------------------------------------------------------
 
 
 def test_all_samples_are_in_an_orbit_diagram():

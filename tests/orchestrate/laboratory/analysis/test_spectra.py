@@ -19,9 +19,6 @@ def complex_response(answer, estimator="H1", channel="acceleration1"):
     return part.frequency.values, (part.magnitude * np.exp(1j * part.phase)).values
 
 
-# -- frequency response ---------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("estimator", ["H1", "H2", "Hv"])
 @pytest.mark.parametrize("seed", ordinary(range(2)))
 def test_response_of_a_bonded_structure_is_its_transfer_function(seed, estimator):
@@ -33,9 +30,6 @@ def test_response_of_a_bonded_structure_is_its_transfer_function(seed, estimator
         error = answer.random_error.sel(channel=channel, frequency=BAND).values
         assert (np.abs(found - expected) < 5.0 * error * np.abs(expected)).all()
         assert np.abs(found / expected - 1.0).max() < 0.01
-
-
-# -- averages -------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -53,9 +47,6 @@ def test_independent_averages_are_those_of_the_scatter(window, overlap):
     assert np.isclose(1.0 / scatter, float(densities[0].averages), rtol=0.1)
 
 
-# -- power density --------------------------------------------------------------------------------
-
-
 def test_density_integrates_to_the_mean_square():
     values = np.random.default_rng(2).normal(1.0, 3.0, (3, 4000))
     answer = psd(make(200.0, *values), resolution=0.05, window="boxcar", overlap=0.0)
@@ -64,9 +55,6 @@ def test_density_integrates_to_the_mean_square():
     assert np.allclose(integral, values.var(axis=1), rtol=1e-12)
     smoothed = psd(make(200.0, *values), resolution=1.0)
     assert np.allclose(smoothed.rms, values.std(axis=1), rtol=0.03)
-
-
-# -- spectrogram ----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("begin", [0.0, 3.0])

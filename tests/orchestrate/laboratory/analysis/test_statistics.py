@@ -11,8 +11,6 @@ from orchestrate import probability_density, shock_spectrum
 from ....sparing import ordinary
 from .records import make
 
-# -- shock spectra --------------------------------------------------------------------------------
-
 
 def integrated(time, base, frequency, damping):
     """Largest responses during and after a base acceleration that is straight between samples.
@@ -57,9 +55,6 @@ def test_peaks_are_those_of_an_integration(frequency, damping):
         assert np.isclose(float(shown.primary), primary, rtol=4e-3)
         assert np.isclose(float(shown.residual), residual, rtol=4e-3)
         assert float(shown.maximax) == max(float(shown.primary), float(shown.residual))
-
-
-# -- density --------------------------------------------------------------------------------------
 
 
 def test_moments_of_known_signals():
