@@ -13,14 +13,7 @@ from scipy.linalg import eigh
 from orchestrate.constants import TURN
 
 from .lumped import Clamp, Faces, Halves, in_rattling_clamp
-from .recipe import (
-    Conditions,
-    Maker,
-    Specimen,
-    bonded_specimen,
-    draw_halves,
-    draw_log_uniform,
-)
+from .recipe import Conditions, Maker, Specimen, bonded_specimen, draw_halves, draw_log_uniform
 from .system import ModalSystem
 
 

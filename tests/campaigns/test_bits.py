@@ -13,17 +13,12 @@ import pytest
 
 from orchestrate.errors import FmuError, InputError
 from orchestrate.fmu import OSCILLATOR, Instance, find_or_export
+from tests.fmu.programs.driver import OF_A_STEP, STATE
 
 from .findings import expect_none
 from .parameter_sets import ParameterSet, draw_parameter_set
 
-STATE = (
-    *("x1", "x2", "v1", "v2", "x_rel", "v_rel", "xi1", "xi2", "xi_rel", "box_force"),
-    *("contact_force", "in_contact", "phase", "impact_count", "impact_time", "impact_velocity"),
-    *("impact_energy", "contact_count", "sticking_energy"),
-)
-STEP = ("box_impulse", "box_impulse_moment", "x_rel_max", "evaluations")  # of the last step alone
-OUTPUTS = (*STATE, *STEP)
+OUTPUTS = (*STATE, *OF_A_STEP)
 MANY = 1e6  # impacts in a step, from which on it may give up
 REFUSED = ("refused",)
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="libraries for Linux")

@@ -33,11 +33,7 @@ FACES = Strikes(
 )  # fmt: skip
 WORDS = {  # on both sides of each threshold
     "nothing heard": [{"heard": 2.9}, {"heard": 4.9, "locked": 0.61}],
-    "something faint": [
-        {"heard": 3.1},
-        {"heard": 9.9},
-        {"heard": 5.1, "locked": 0.61},
-    ],
+    "something faint": [{"heard": 3.1}, {"heard": 9.9}, {"heard": 5.1, "locked": 0.61}],
     "base strikes": [{"base": 16.0}],
     "not locked": [{"locked": 0.61}, {"one_sided": 0.58}, {"locked": 0.61, "opposite": -0.99}],
     "kinks": [{"blow": 0.27}, {"blow": 0.27, "opposite": -0.99}],

@@ -86,7 +86,7 @@ def test_what_is_no_swept_sine_of_a_structure_is_refused_in_one_line():
     records = {
         "not described by this method": {"box_acceleration": noise[0], "acceleration1": noise[1]},
         "not described by this method ": {
-            **{"box_acceleration": np.sin(np.arange(40)), "acceleration1": noise[0, :40]},
+            **{"box_acceleration": np.sin(np.arange(40)), "acceleration1": noise[0, :40]}
         },
         "acceleration1, acceleration2 or both": {"box_acceleration": np.sin(np.arange(9000) / 9)},
         r"face 1 \(acceleration1\): does not move": {

@@ -131,7 +131,7 @@ def windows(one, other=None, noise=0.0, floor=0.0):
 
 def even_orders_of(*sensors, **options):
     evidence = windows(*sensors, **options)
-    return even_orders(evidence, np.zeros_like(evidence.measured))
+    return measure_opening(evidence, np.zeros_like(evidence.measured_orders))
 
 
 @pytest.mark.parametrize(

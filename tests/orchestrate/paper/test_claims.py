@@ -7,15 +7,7 @@ import pytest
 import xarray as xr
 
 from orchestrate.dynamics.lyapunov import CHAOTIC, PERIODIC
-from orchestrate.paper.claims import (
-    NO,
-    PARTLY,
-    UNDECIDED,
-    YES,
-    Claim,
-    judge,
-    read_claims,
-)
+from orchestrate.paper.claims import NO, PARTLY, UNDECIDED, YES, Claim, judge, read_claims
 from orchestrate.paper.curves import CONTACT, FLIGHT
 from orchestrate.paper.measures import find_measure, limits
 
