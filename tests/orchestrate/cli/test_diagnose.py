@@ -8,7 +8,6 @@ import re
 from contextlib import redirect_stdout
 from dataclasses import replace
 
-import numpy as np
 import pytest
 import xarray as xr
 
@@ -16,41 +15,6 @@ import orchestrate
 from orchestrate.cli import main, parse_arguments
 from orchestrate.cli.diagnosis import Sweep
 from orchestrate.diagnosis import settings
-from tests import ROOT
-
-GUESS = ROOT / "docs" / "records" / "beam.toml"
-
-
-@pytest.fixture
-def sine(tmp_path):
-    time = np.arange(400) / 200.0
-    rows = zip(time, np.sin(60.0 * time), np.cos(60.0 * time), strict=True)
-    text = "".join(";".join(f"{value:.6g}" for value in row) + "\n" for row in rows)
-    path = tmp_path / "sine.csv"
-    path.write_text(f"time [s];base [m/s2];acc 1 [m/s2]\n{text}")
-    return path
-
-
-MISTAKES = """
-    FILE --set e=0.4 : --set: of a guess | --structure FILE.toml
-    lost.csv : lost.csv: no such file; expected a record
-    FILE GUESS --participation 1,2,3 : --participation 1,2,3: expected a factor for face 1
-    FILE --structure lost.toml : lost.toml
-    FILE GUESS --channels 0 : channels = '0' | base=...,face1=
-    FILE GUESS --columns 0,1 : no acceleration of a face in time | base | --channels
-    FILE FILE GUESS --other FILE : --other: of one beam
-    FILE GUESS --unit furlong : furlong | give it by --unit
-    FILE GUESS : sine | sine
-"""
-
-
-@pytest.mark.parametrize("line", MISTAKES.strip().splitlines())
-def test_mistakes_are_one_line_and_nothing_is_written(ask, tmp_path, sine, line):
-    options, _, words = line.strip().partition(" : ")
-    options = options.replace("GUESS", f"--structure {GUESS}").replace("FILE", str(sine))
-    ask("diagnose", *options.split()).complaint(*(word.strip() for word in words.split("|")))
-    assert not (tmp_path / "results").exists() or not any((tmp_path / "results").iterdir())
-
 
 GUESSED = (
     "[structure]\nm1 = 1.5\nm2 = 1.2\nf1_hz = 44.0\nf2_hz = 52.0\nzeta1 = 0.01\nzeta2 = 0.01\n"
@@ -129,19 +93,19 @@ def test_a_record_has_a_page_with_its_evidence(run):
     assert abs(f1 - 42.0) < 4.0 * error < 2.0
 
 
-def test_answers_are_stored_and_taken_again_beside_a_refused_record(run, sine, capsys):
+def test_answers_are_stored_and_taken_again_beside_a_refused_record(run, files, capsys):
     """Another guess has files of its own."""
     folder, _, said = run
     verdicts = {path: xr.load_dataset(path) for path in folder.glob("diagnose_*[!s].nc")}
     assert len(verdicts) == 1
     options = ["--structure", str(folder / "beam.toml"), "--output", str(folder)]
     options += ["--jobs", "1", "--plot", "none"]
-    code = main(["diagnose", str(sine), str(folder / "parted.csv"), *options])
+    code = main(["diagnose", str(files["sine.csv"]), str(folder / "parted.csv"), *options])
     out, err = capsys.readouterr()
     (verdict,) = [line for line in said.splitlines() if "parted.csv: " in line]
     assert code == 2 and verdict in out
     (line,) = [line for line in err.splitlines() if line.startswith("error")]
-    assert line.startswith(f"error: 1 of 2 records refused: {sine}: ")
+    assert line.startswith(f"error: 1 of 2 records refused: {files['sine.csv']}: ")
     assert all(xr.load_dataset(path).equals(data) for path, data in verdicts.items())
     assert all({"identity", "fmu_guid"} <= set(data.attrs) for data in verdicts.values())
     names = set()

@@ -17,7 +17,7 @@ from orchestrate.errors import InputError
 from tests import ROOT
 
 QUICK = ("--transient", "5", "--samples", "8")
-MISTAKES = {  # options of each command, then what its line says
+MISTAKES = {  # options of each command, with names of `files`, then what its line says
     "sweep": """
         --eta -1 : --eta -1: | 0 < FIRST
         --eta 2:1:0.1 : --eta 2:1:0.1: | FIRST <= LAST
@@ -58,6 +58,26 @@ MISTAKES = {  # options of each command, then what its line says
         README.md --beside whole.nc : --beside whole.nc: expected LABEL=FILE
         README.md --beside README=x.nc : a second record README
         README.md --damping 0.1 : --damping: expected only with --show shock
+        parted.nc --beside x=lost.nc : --beside lost.nc: no such file
+        parted.nc --show orders --orders 2.5 : orders = 2.5: expected
+        parted.nc --resolution 0.001 : resolution = 0.001 Hz | parted.nc
+        parted.nc --from 20 : nothing between --from and --to; it has 0 to 9.999 s
+        simulated.nc --sensor fast : --sensor fast: expected HZ or HZ:RATE
+        bench.csv : bench.csv | no unit | --unit
+        bench.csv --unit stone : unit = 'stone'
+        bench.csv --unit g --columns acceleration1=9 : no column 9
+        bench.csv --unit g --columns mass=1 : no channel 'mass'
+    """,
+    "diagnose": """
+        sine.csv --set e=0.4 : --set: of a guess | --structure FILE.toml
+        lost.csv : lost.csv: no such file; expected a record
+        sine.csv --structure beam.toml --participation 1,2,3 : --participation 1,2,3: | face 1
+        sine.csv --structure lost.toml : lost.toml
+        sine.csv --structure beam.toml --channels 0 : channels = '0' | base=...,face1=
+        sine.csv --structure beam.toml --columns 0,1 : no acceleration of a face in time | --ch
+        sine.csv sine.csv --structure beam.toml --other sine.csv : --other: of one beam
+        sine.csv --structure beam.toml --unit furlong : furlong | give it by --unit
+        sine.csv --structure beam.toml : sine | sine
     """,
     "plan": """
         --sensor 9:8:7 : --sensor 9:8:7: expected HZ or HZ:RATE
@@ -121,10 +141,10 @@ CASES = [
 
 
 @pytest.mark.parametrize(("command", "options", "words"), CASES)
-def test_mistake(ask, tmp_path, command, options, words):
+def test_mistake(ask, tmp_path, files, command, options, words):
     if command == "sweep" and not ("--eta" in options or "--over" in options):
         options = f"--eta 1 {options}"
-    done = ask(command, *shlex.split(options))
+    done = ask(command, *(files.get(word, word) for word in shlex.split(options)))
     assert done.out == ""
     done.complaint(*(word.strip() for word in words.split("|")))
     assert done.complaints[0].startswith("error: ")

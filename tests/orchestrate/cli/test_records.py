@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 
-import numpy as np
 import pytest
 import xarray as xr
 
@@ -12,32 +11,8 @@ import orchestrate
 
 from .test_commands import shows_something
 
-RATE = 1000.0
 SWEEP = orchestrate.SweptSine(first=11.0, last=13.0, duration=4.0, acceleration=1.0)
 NO_PLOT = ("--plot", "none")
-
-
-def sweep(order_2=0.0, second=True, noise=0.0):
-    """A swept sine from 20 to 60 Hz, and a response of known orders."""
-    time = np.arange(10_000) / RATE
-    angle = 2.0 * np.pi * (20.0 * time + 2.0 * time**2)
-    box, response = 2.0 * np.sin(angle), 6.0 * np.sin(angle) + order_2 * np.sin(2.0 * angle)
-    response += noise * np.random.default_rng(1).normal(size=len(time))
-    channels = {"box_acceleration": box, "acceleration1": response, "acceleration2": 0.5 * response}
-    kept = {name: ("time", channels[name]) for name in list(channels)[: 2 + second]}
-    return xr.Dataset(kept, {"time": time}, {"sample_rate": RATE, "title": "A sweep"})
-
-
-@pytest.fixture(scope="module")
-def files(tmp_path_factory):
-    """Records: bonded, delaminated, measured with one accelerometer, in g, and of a simulation."""
-    folder = tmp_path_factory.mktemp("records")
-    records = {"bonded": sweep(), "parted": sweep(0.6), "measured": sweep(0.5, False, 0.01)}
-    records["simulated"] = records["parted"].assign(impulse=("impact", [1.0]))
-    for name, record in records.items():
-        record.to_netcdf(folder / f"{name}.nc")
-    in_g(sweep(second=False), folder / "bench.csv")
-    return {path.stem: path for path in folder.iterdir()}
 
 
 def said(done):
@@ -58,7 +33,7 @@ SHOWN = {
 
 def test_each_analysis_says_its_numbers(ask, tmp_path, files):
     cut = ("--from", "0.5", "--to", "9.5", *NO_PLOT)
-    done = ask("analyse", files["parted"], "--show", ",".join(SHOWN), *cut).success()
+    done = ask("analyse", files["parted.nc"], "--show", ",".join(SHOWN), *cut).success()
     assert all(word in done.out for words in SHOWN.values() for word in words), done.out
     for show in SHOWN:
         (stored,) = (tmp_path / "results").glob(f"analyse_{show}_parted_*")
@@ -66,9 +41,10 @@ def test_each_analysis_says_its_numbers(ask, tmp_path, files):
 
 
 def test_three_records_in_one_picture_by_the_options(ask, tmp_path, files):
+    besides = [f"{name}={files[f'{name}.nc']}" for name in ("bonded", "measured")]
     done = ask(
-        *("analyse", files["parted"], "--label", "delaminated", "--show", "frf,orders,shock"),
-        *("--beside", f"bonded={files['bonded']}", "--beside", f"measured={files['measured']}"),
+        *("analyse", files["parted.nc"], "--label", "delaminated", "--show", "frf,orders,shock"),
+        *("--beside", besides[0], "--beside", besides[1]),
         *("--format", "nc,csv", "--resolution", "2", "--damping", "0.02", "--orders", "0.5,1,2"),
         *("--periods", "20", "--window", "flattop", "--overlap", "0.7"),
     ).success()
@@ -84,36 +60,6 @@ def test_three_records_in_one_picture_by_the_options(ask, tmp_path, files):
     assert float(shock.damping) == 0.02 and float(frf.resolution) == 2.0
     assert frf.attrs["window"] == "flattop" and frf.attrs["overlap"] == 0.7
     assert len([*folder.glob("*.csv")]) >= 9
-
-
-MISTAKES = """
-    parted.nc --beside x=lost.nc : --beside lost.nc: no such file
-    parted.nc --show orders --orders 2.5 : orders = 2.5: expected
-    parted.nc --resolution 0.001 : resolution = 0.001 Hz | parted.nc
-    parted.nc --from 20 : nothing between --from and --to; it has 0 to 9.999 s
-    simulated.nc --sensor fast : --sensor fast: expected HZ or HZ:RATE
-    bench.csv : bench.csv | no unit | --unit
-    bench.csv --unit stone : unit = 'stone'
-    bench.csv --unit g --columns acceleration1=9 : no column 9
-    bench.csv --unit g --columns mass=1 : no channel 'mass'
-"""
-
-
-@pytest.mark.parametrize("line", MISTAKES.strip().splitlines())
-def test_mistakes_are_one_line(ask, tmp_path, files, line):
-    options, _, words = line.strip().partition(" : ")
-    file, *options = options.split()
-    ask("analyse", files[file.split(".")[0]], *options).complaint(
-        *(word.strip() for word in words.split("|"))
-    )
-    assert not (tmp_path / "results").exists() or not any((tmp_path / "results").iterdir())
-
-
-def in_g(record, path):
-    """An export of an analyser: g, a decimal comma, channels by the names of its inputs."""
-    rows = zip(record.time.values, *(record[name].values / 9.80665 for name in record), strict=True)
-    lines = [";".join(f"{value:.9f}" for value in row).replace(".", ",") for row in rows]
-    path.write_text("\n".join(["Zeit [s];AI 1;AI 2", *lines]) + "\n")
 
 
 def test_what_sensors_read_of_a_simulated_test_is_a_record(ask, tmp_path):
