@@ -29,8 +29,11 @@ def pasted(tmp_path, monkeypatch):
             words = shlex.shlex(line, posix=True, punctuation_chars=True)
             words.whitespace_split = True
             python, flag, what, *options = words
-            assert (python, flag, what) == ("python", "-m", "orchestrate") or flag == "-c", line
-            assert exec(what) is None if flag == "-c" else cli.main(options) == 0
+            if (python, flag) == ("python", "-c"):
+                exec(what)
+            else:
+                assert (python, flag, what) == ("python", "-m", "orchestrate"), line
+                assert cli.main(options) == 0
         return [xr.load_dataset(file) for file in sorted(folder.rglob("*.nc"))]
 
     return run
