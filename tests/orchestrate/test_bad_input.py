@@ -274,6 +274,10 @@ def test_a_wall_has_no_second_mass():
 
 PROFILE = ((20.0, 0.5), (200.0, 0.1))
 SWEEP = {"first": 20.0, "last": 90.0, "duration": 2.0, "acceleration": 4.9}
+HALVES = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=52.0, zeta1=0.06, zeta2=0.04, e=0.5)
+NOISY = orchestrate.Sensor(bandwidth=600.0, noise=0.01, range=300.0)
+PLAN = {"sensor": NOISY, "levels": [1.0], "frequencies": [40.0, 50.0]}
+LINKS = {"box_velocity": "box_velocity", "box_force": "box_force"}
 CURVE = {"frequency": np.arange(40.0, 60.0), "level": 4.0, "amplitude1": np.ones(20)}
 RECORDED = np.arange(200) / 100.0
 MADE = {  # what is made of numbers, each of which is refused by its name where it is none
@@ -337,6 +341,10 @@ def curve(**changes):
     return lambda: orchestrate.resonance_curve(**{**CURVE, **changes})
 
 
+def plan(structure=HALVES, **changes):
+    return lambda: orchestrate.plan_test(structure, **{**PLAN, **changes})
+
+
 @functools.cache
 def shaken():
     sampled = orchestrate.Sampled(acceleration=np.ones(30).tolist(), sample_rate=100.0)
@@ -347,6 +355,7 @@ FAST = orchestrate.Sensor(bandwidth=30.0, sample_rate=90.0)
 NAN = math.nan
 RAMP = {"voltage": (1.2, 1.6)}
 STEPS = orchestrate.SteppedSine(frequencies=(40.0, 46.0), acceleration=4.0)
+LEVEL = {"command": orchestrate.LevelControl(sine=STEPS, start=0.1)}
 RELATED = [  # numbers that do not fit each other, words, and what else has a rule of its own
     (made("SweptSine", last=20.0), "last = 20.0 Hz | another frequency than first"),
     (made("SweptSine", spacing="lin"), "spacing = 'lin' | linear, log"),
@@ -451,6 +460,20 @@ RELATED = [  # numbers that do not fit each other, words, and what else has a ru
         "'1.0' or '2.0'",
     ),
     (lambda: write_ssp("nowhere/x.ssp", QUICK, DRIVE), "voltage: expected with a motor"),
+    (
+        asked("cosimulate", QUICK, SHAKER, connect=LINKS, inputs=LEVEL, duration=0.4, step=1e-3),
+        "command is controlled; connect box_acceleration",
+    ),
+    (asked("record_of_run", None), "run: no box_acceleration and angle over the time"),
+    (plan(levels=[0.0]), "levels"),
+    (plan(frequencies=[50.0, 40.0]), "frequencies"),
+    (plan(frequencies=50.0), "two at least"),
+    (plan(sensor=orchestrate.Sensor(bandwidth=400.0)), "noise = 0.0"),
+    (plan(sensor={"box_acceleration": NOISY}), "only on the box"),
+    (plan(HALVES.as_bonded()), "bonded"),
+    (plan(reserve=0.5), "reserve"),
+    (plan(g=0.1), "levels and g: expected one"),
+    (plan(levels=None, g=[-1.0]), "g = "),
 ]
 
 

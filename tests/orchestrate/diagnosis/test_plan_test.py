@@ -18,7 +18,6 @@ from orchestrate.diagnosis.plan_test import (
     sweep_duration,
 )
 from orchestrate.diagnosis.undamaged import SoundStructure
-from orchestrate.errors import InputError
 
 HALVES = orchestrate.Structure.from_halves(
     m1=1.5, m2=1.2, f1=42.0, f2=52.0, zeta1=0.06, zeta2=0.04, e=0.5
@@ -140,26 +139,6 @@ def test_preloaded_faces_open_from_a_level_in_closed_form(exported):
     assert plan.opening[0] < 1e-9 < plan.opening[1]
     assert plan.verdict.values[0] != "delaminated" == plan.verdict.values[1]
     assert plan.closing_force[0] < force < plan.closing_force[1]
-
-
-@pytest.mark.parametrize(
-    ("wrong", "text"),
-    [
-        ({"levels": [0.0]}, "levels"),
-        ({"frequencies": [50.0, 40.0]}, "frequencies"),
-        ({"frequencies": 50.0}, "two at least"),
-        ({"sensor": orchestrate.Sensor(bandwidth=400.0)}, "noise = 0.0"),
-        ({"sensor": {"box_acceleration": SENSOR}}, "only on the box"),
-        ({"structure": HALVES.as_bonded()}, "bonded"),
-        ({"reserve": 0.5}, "reserve"),
-        ({"g": 0.1}, "levels and g: expected one"),
-        ({"levels": None, "g": [-1.0]}, "g = "),
-    ],
-)
-def test_mistakes_are_one_line(wrong, text):
-    asked = {"sensor": SENSOR, "levels": [1.0], "frequencies": [40.0, 50.0], **wrong}
-    with pytest.raises(InputError, match=text):
-        orchestrate.plan_test(asked.pop("structure", HALVES), **asked)
 
 
 LIGHT = orchestrate.Structure.from_halves(

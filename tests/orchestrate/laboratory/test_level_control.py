@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate.errors import InputError
 from orchestrate.weak_drive import cosimulate
 
 HALVES = {"m1": 0.10, "m2": 0.08, "f1": 42.0, "f2": 55.0, "zeta1": 0.02, "zeta2": 0.02, "e": 0.6}
@@ -82,12 +81,3 @@ def test_a_controlled_run_resumes_with_the_same_bits(monkeypatch):
     for name in ("x1", "current", "box_acceleration", "coupling_error"):
         assert parts[name].values.tobytes() == whole[name].values.tobytes(), name
     assert float(abs(whole.box_acceleration).max()) > 0.1 * LEVEL
-
-
-@pytest.mark.usefixtures("exported")
-def test_what_cannot_be_controlled():
-    control = orchestrate.LevelControl(sine=STEPS, start=0.1)
-    names = {"box_velocity": "box_velocity", "box_force": "box_force"}
-    run = {"inputs": {"command": control}, "duration": 0.4, "step": 1e-3}
-    with pytest.raises(InputError, match="command is controlled; connect box_acceleration"):
-        orchestrate.cosimulate(BEAM, SHAKER, connect=names, **run)
