@@ -44,19 +44,6 @@ def test_the_direction_of_a_sweep():
     assert {one: sweep_direction(np.array(one, dtype=float)) for one in kinds} == kinds
 
 
-@pytest.mark.parametrize(
-    ("arguments", "text"),
-    [
-        ({"free": ("f1", "f3")}, "free = 'f3': expected some of f1, f2"),
-        ({"free": ()}, "each once"),
-        ({"hypothesis": "cracked"}, "hypothesis = 'cracked': expected one of delaminated"),
-    ],
-)
-def test_wrong_arguments_are_named(arguments, text):
-    with pytest.raises(orchestrate.InputError, match=text):
-        orchestrate.fit(record(), guess(), **arguments)
-
-
 def test_more_parameters_than_the_numbers_of_one_tone_are_not_fitted():
     """Three orders of one sensor do not determine five parameters; two are fitted."""
     time = np.arange(3000) / RATE

@@ -186,20 +186,3 @@ def test_a_weak_drive_jumps_earlier_and_takes_more_power():
     assert orchestrate.signs(one, other=other).equals(whole)
     unknown = orchestrate.signs(drive_run(6.3, 1.3, np.nan), other=runs[1]).sel(channel="motor")
     assert [of(unknown, s, "exceeds") for s in ("jump_voltage_fall", "extra_power")] == [-1, 1]
-
-
-@pytest.mark.parametrize(
-    ("wrong", "text"),
-    [
-        ({"seeds": 0}, "seeds = 0"),
-        ({"noise": -1.0}, "noise = -1.0"),
-        ({"periods": 1.0}, "periods = 1.0"),
-        ({"high_band": 480.0}, "high_band = 480.0"),
-        ({"other": record({1: 6.0}).drop_vars("acceleration1")}, r"other\[0\]: none"),
-    ],
-)
-def test_mistakes_are_one_line(wrong, text):
-    with pytest.raises(InputError, match=text):
-        orchestrate.signs(record({1: 6.0}), **wrong)
-    with pytest.raises(InputError, match="no acceleration1"):
-        orchestrate.signs(record({1: 6.0}).drop_vars("acceleration1"))

@@ -13,7 +13,7 @@ BEAM = orchestrate.Structure.from_halves(**HALVES)
 SHAKER = orchestrate.Shaker.from_file("shaker_100N").replace(table_mass=0.4)
 LEVEL = 4.0
 STEPS = orchestrate.SteppedSine(
-    frequencies=(40.0, 46.0), acceleration=LEVEL, settle_cycles=120, measured_cycles=40
+    frequencies=(40.0, 46.0), acceleration=LEVEL, settle_cycles=80, measured_cycles=20
 )
 
 
