@@ -27,7 +27,7 @@ def continued():
 @pytest.fixture(scope="module")
 def driven():
     quick, drive = Structure.from_file("quick"), Drive.from_file("quick")
-    question = {"voltage": (1.2, 1.25), "rate": 1e-3, **QUIET}
+    question = {"voltage": (1.2, 1.25), "rate": 1e-2, **QUIET}
     return [orchestrate.couple(s, drive, **question) for s in (quick.as_bonded(), quick)]
 
 
