@@ -26,8 +26,8 @@ def test_the_test_command_is_what_ci_runs():
 
 @pytest.mark.parametrize("reference", assets.REFERENCES, ids=lambda reference: reference.model)
 def test_the_variable_tables_are_the_fmus(exported, reference):
-    table = assets.variable_table(BUILD / "fmi2-python" / f"{reference.model}.fmu")
-    assert assets.replace_table(TABLES, reference, table) == TABLES
+    table = assets.variable_tables_as_markdown(BUILD / "fmi2-python" / f"{reference.model}.fmu")
+    assert assets.replace_variable_table(TABLES, reference, table) == TABLES
 
 
 def test_what_it_points_to_is_there():

@@ -2,12 +2,12 @@
 
 import pytest
 
-from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, find
+from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, find_or_export
 
 
 @pytest.fixture(scope="module")
 def instances(exported):
     """The oscillator without events, and with them."""
-    fmu = find(OSCILLATOR).path
+    fmu = find_or_export(OSCILLATOR).path
     with Instance(fmu) as plain, EventInstance(fmu) as eventful:
         yield plain, eventful
