@@ -73,7 +73,7 @@ def folded_branch():
 def test_a_fold_is_found_from_either_side_of_it(monkeypatch, beyond):
     """Beyond there is no orbit, and what is known of a fold is known to its accuracy."""
     start = folded_branch()
-    monkeypatch.setattr(questions, "answer", lambda job, *rest: job)
+    monkeypatch.setattr(questions, "compute_dataset", lambda job, *rest: job)
     (at,) = np.flatnonzero(start.bifurcation_kind.values == 0)
     value = float(start.bifurcation_value[at])
     question = {"over": ("frequency", "e"), "limits": [(1.2, 1.4), (0.6, 0.8)]}

@@ -198,7 +198,7 @@ def test_what_pushes_at_the_start_is_kept(monkeypatch):
     """Of an orbit that is stable, whose manifold is refused after that."""
     pushes = {"box_acceleration": 0.05, "force1": 0.02}
     start = orbit(PAPER, eta=1.7, **pushes)
-    monkeypatch.setattr(questions, "answer", lambda job, *rest: job)
+    monkeypatch.setattr(questions, "compute_dataset", lambda job, *rest: job)
     kept = branch(PAPER, start=start, limits=(1.6, 1.8))
     assert dict(kept.setting.excitation) == pushes
     given = branch(PAPER, start=start, limits=(1.6, 1.8), box_acceleration=0.0)
