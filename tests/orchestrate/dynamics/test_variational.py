@@ -44,10 +44,12 @@ def pushed_point(structure, eta, size):
 
 def differences(instance, point, start, periods):
     """Central differences of the state after some periods: the matrix through the FMU alone."""
-    step = 1e-7 * np.abs(start / point.scale).max()
-    moves = step * np.diag(point.scale)[moving(point)]
+    step = 1e-7 * np.abs(start / point.state_units).max()
+    moves = step * np.diag(point.state_units)[moving(point)]
     ends = [[after(instance, point, start + k * d, periods) for d in moves] for k in (1, -1)]
-    return np.subtract(*ends).T[moving(point)] / point.scale[moving(point), None] / (2.0 * step)
+    return (
+        np.subtract(*ends).T[moving(point)] / point.state_units[moving(point), None] / (2.0 * step)
+    )
 
 
 def moving(point):
