@@ -34,7 +34,7 @@ SUBJECTS = {
     ),
     "orchestrate/dynamics/settling.py": tuple(
         f"tests/orchestrate/dynamics/test_{name}.py"
-        for name in ("settling", "decision", "global_continuation")
+        for name in ("settling", "clusters", "decision", "global_continuation")
     ),
     "orchestrate/dynamics/curve_growth.py": ("tests/orchestrate/dynamics/test_manifolds.py",),
     "orchestrate/laboratory/analysis/knocks.py": ("tests/orchestrate/laboratory/test_hammer.py",),
