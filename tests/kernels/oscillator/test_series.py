@@ -143,18 +143,18 @@ def test_all_that_moves_the_masses_raises_the_bound(sign, force):
     parts |= {at.PRELOAD: 1.35 / rate}
     if force:
         parts |= {apart: 1.35 / rate, apart + 1: 1.35 / rate}
-    box = m[at.OSCILLATOR_1 + at.SHARES] if force else 1.0
-    parts |= {at.CUBIC + k: abs(box) * 1.35 * driven / rate ** (2 + k) for k in range(4)}
-    if force:  # the gap feels the box as both masses do
-        gap = abs(m[at.GAP + at.SHARES])
+    cubics = (at.CUBIC, at.CUBIC_1, at.CUBIC_2) if force else (at.CUBIC,)
+    for number, cubic in enumerate(cubics):  # the gap feels the box as both masses do
+        own = abs(m[at.OSCILLATOR_1 + at.SHARES + number]) if force else 1.0
+        gap = abs(m[at.GAP + at.SHARES + number]) if force else 0.0
         for k in range(4):
-            parts[at.CUBIC + k] += gap * 1.35 / rate ** (1 + k)
+            parts[cubic + k] = 1.35 * (own * driven / rate + gap) / rate ** (1 + k)
     for slot, part in parts.items():
         bounds = []
         for size in (0.0, 1.0, 2.0):
             other = list(m)
-            if at.CUBIC <= slot < at.CUBIC + 4:
-                other[at.CUBIC : at.CUBIC + 4] = [0.0] * 4
+            for cubic in cubics:
+                other[cubic : cubic + 4] = [0.0] * 4
             other[slot] = size if slot == at.SERIES_GAP + 2 else sign * size  # it opens
             bounds.append(series.fifth_derivative_bound(other))
         for low, high in zip(bounds, bounds[1:], strict=False):
