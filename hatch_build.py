@@ -60,7 +60,7 @@ class CustomBuildHook(BuildHookInterface):
         build = root / "build"
         for form in forms.FORMS:
             for name in forms.MODELS:
-                path, token = build / form / f"{name}.fmu", forms.guid(name, form)
+                path, token = build / form / f"{name}.fmu", forms.fmu_guid(name, form)
                 self.include(
                     {path: f"{PLACE}/{form}/{name}.fmu"},
                     lambda path=path, token=token: guid_inside(path) == token,
@@ -71,12 +71,12 @@ class CustomBuildHook(BuildHookInterface):
             {module: f"{PLACE}/wasm/{module.name}"},
             lambda: (
                 module.is_file()
-                and webassembly.guid_inside(module.read_bytes()) == webassembly.guid()
+                and webassembly.guid_inside_module(module.read_bytes()) == webassembly.module_guid()
             ),
             lambda: write(module, webassembly.compile_module()),
         )
         for source in sorted(c_library.LOOPS.glob("*.c")):
-            token = c_library.guid(source)
+            token = c_library.library_guid(source)
             for platform in platforms.PLATFORMS:
                 path = build / "libraries" / c_library.library_name(source, platform)
                 if platform in platforms.default_platforms() or path.exists():

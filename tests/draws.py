@@ -68,7 +68,10 @@ def draw_with_folds(rng: np.random.Generator) -> System:
 def smallest_slope(system: System, count: int = 10_001) -> float:
     """Return the smallest slope d eta0 / d Omega at the resonance; negative with folds."""
     numerator, denominator = averaged.slope_polynomials(*system)
-    low, peak = averaged.speed_between_resonances(*system), averaged.bonded_resonance(*system)
+    low, peak = (
+        averaged.eta_between_box_and_bonded_resonance(*system),
+        averaged.bonded_resonance(*system),
+    )
     near = peak + averaged.bonded_resonance_half_width(*system) * np.linspace(-20.0, 20.0, count)
     speeds = np.concatenate([np.linspace(low, 2.0 * peak, count), near[near > low]])
     return float((numerator(speeds) / denominator(speeds)).min())

@@ -63,7 +63,7 @@ def refresh_model(name, build):
     """One model in all forms; returns as :func:`refresh`."""
     reasons = {}
     for form in forms.FORMS:
-        if guid_inside(build / form / f"{name}.fmu") != forms.guid(name, form):
+        if guid_inside(build / form / f"{name}.fmu") != forms.fmu_guid(name, form):
             try:
                 forms.export(name, form, build)
             except CannotExport as reason:

@@ -21,7 +21,7 @@ def content_hash(files: Mapping[str, bytes]) -> str:
     return digest.hexdigest()[:32]
 
 
-def guid_of(files: Mapping[str, bytes]) -> str:
+def guid_of_files(files: Mapping[str, bytes]) -> str:
     digest = content_hash(files)
     return f"{{{digest[:8]}-{digest[8:12]}-{digest[12:16]}-{digest[16:20]}-{digest[20:]}}}"
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ..kernels import deviations, linear_response, orbits, repetition
 from ..kernels.numerics import turn
-from .archive import guid_of
+from .archive import guid_of_files
 from .compiler import compile_and_link
 from .errors import CannotExport
 from .platforms import PLATFORMS
@@ -42,8 +42,8 @@ KERNELS = {  # headers that a source may include, translated from Python
 }
 
 
-def guid(source: Path) -> str:
-    return guid_of({**import_closure("export/c_library.py"), **loop_files(source)})
+def library_guid(source: Path) -> str:
+    return guid_of_files({**import_closure("export/c_library.py"), **loop_files(source)})
 
 
 def loop_files(source: Path) -> Files:
@@ -62,7 +62,7 @@ def files_with_translated_headers(source: Path) -> Files:
 
 def compile_loop(source: Path, platform: str) -> bytes:
     visibility = "__declspec(dllexport)" if platform.endswith("-windows") else VISIBLE
-    token = f'{visibility} const char token[] = "{guid(source)}";\n'.encode()
+    token = f'{visibility} const char token[] = "{library_guid(source)}";\n'.encode()
     return compile_and_link(
         platform, source.stem, {**files_with_translated_headers(source), "token.c": token}
     )

@@ -13,7 +13,7 @@ __all__ = [
     "MODELS",
     "PLAIN_FORMS",
     "export",
-    "guid",
+    "fmu_guid",
     "select_platforms",
     "source_forms_of",
 ]
@@ -44,10 +44,10 @@ def export(name: str, form: str, build: Path, platforms: tuple[str, ...] | None 
     return native_form.export(MODELS[name], form, Path(build) / form, platforms)
 
 
-def guid(name: str, form: str) -> str:
+def fmu_guid(name: str, form: str) -> str:
     """Return the GUID of an FMU of the present sources, in braces, without compiling anything."""
     from . import native_form, pythonfmu_form
 
     if form == PYTHON_FORM:
-        return pythonfmu_form.guid(MODELS[name])
-    return native_form.guid(MODELS[name], form)
+        return pythonfmu_form.pythonfmu_guid(MODELS[name])
+    return native_form.native_fmu_guid(MODELS[name], form)

@@ -9,7 +9,7 @@ from importlib import resources
 from pathlib import Path
 
 from ..runtime.table import BOOLEAN, REAL, Model, Variable
-from .archive import guid_of, write_archive
+from .archive import guid_of_files, write_archive
 from .compiler import link_for_platforms
 from .description_fmi2 import fmi2_xml
 from .description_fmi3 import fmi3_xml
@@ -68,11 +68,11 @@ def with_standard_prefix(header: bytes) -> bytes:
     return header.replace(NO_PREFIX, STANDARD_PREFIX)
 
 
-def guid(folder: str, form: str) -> str:
+def native_fmu_guid(folder: str, form: str) -> str:
     """Return the GUID: a hash of sources and texts, and of the exporters that make the FMU."""
     kind = form.replace("-", " ")
     model = {"sources": model_digest(folder).encode(), "version": kind.encode()}
-    return guid_of({**exporter_files("export/native_form.py"), **text_files(folder), **model})
+    return guid_of_files({**exporter_files("export/native_form.py"), **text_files(folder), **model})
 
 
 def plain_model(model: Model) -> Model:
@@ -103,7 +103,7 @@ def plain_variable(variable: Variable, excites: bool) -> Variable:
 def export(folder: str, form: str, target: Path, platforms: tuple[str, ...] | None = None) -> Path:
     """Write the model's FMU; forms with ``-sources`` have no binaries, but for that sources."""
     model, digest = load_model(folder), model_digest(folder)
-    version, token = form[:4], guid(folder, form)
+    version, token = form[:4], native_fmu_guid(folder, form)
     header = {"model.h": model_header(model, token, digest, real_outputs="-plain" in form)}
     shim = {**shim_sources(version), **fmi_headers(version), **header}
     described = plain_model(model) if "-plain" in form else model

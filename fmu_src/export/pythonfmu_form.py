@@ -19,7 +19,7 @@ from pathlib import Path
 
 from ..runtime.compiled import LIBRARIES
 from ..runtime.table import Model
-from .archive import content_hash, guid_of, write_archive
+from .archive import content_hash, guid_of_files, write_archive
 from .compiler import link_for_platforms, own_compiler_command, warn_once
 from .description_fmi2 import PYTHON, fmi2_xml
 from .documentation import documentation_files
@@ -52,9 +52,11 @@ def source_digest(folder: str) -> str:
     return content_hash({**embedded_sources(folder), **more})
 
 
-def guid(folder: str) -> str:
+def pythonfmu_guid(folder: str) -> str:
     sources = {"sources": source_digest(folder).encode()}
-    return guid_of({**exporter_files("export/pythonfmu_form.py"), **text_files(folder), **sources})
+    return guid_of_files(
+        {**exporter_files("export/pythonfmu_form.py"), **text_files(folder), **sources}
+    )
 
 
 def require_pythonfmu() -> None:
@@ -72,7 +74,7 @@ def export(folder: str, target: Path) -> Path:
         for name, library in compile_libraries(folder, model).items():
             (package / name).write_bytes(library)
         files = build_with_pythonfmu(script, package, Path(scratch) / "built.fmu")
-    files["modelDescription.xml"] = fmi2_xml(model, guid(folder), PYTHON)
+    files["modelDescription.xml"] = fmi2_xml(model, pythonfmu_guid(folder), PYTHON)
     files.update(documentation_files(folder, digest, "fmi2-python", model.variables))
     require_unedited_sources()
     path = target / f"{model.name}.fmu"

@@ -12,7 +12,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from .archive import guid_of, read_folder
+from .archive import guid_of_files, read_folder
 from .c_library import HEADER, LOOPS, files_with_translated_headers
 from .compiler import CLANG_FLAGS, FLAGS, run_compiler, ziglang_command
 from .description_fmi3 import ARRAY_BASE
@@ -43,13 +43,13 @@ OF_LOOPS = (
 )
 
 
-def guid() -> str:
+def module_guid() -> str:
     files = {**exporter_files("export/webassembly.py"), **read_folder(LOOPS), **read_folder(WEB)}
-    return guid_of({**files, **{name: model_digest(name).encode() for name in MODELS}})
+    return guid_of_files({**files, **{name: model_digest(name).encode() for name in MODELS}})
 
 
 def model_files(folder: str) -> Files:
-    header = model_header(load_model(folder), guid(), model_digest(folder))
+    header = model_header(load_model(folder), module_guid(), model_digest(folder))
     shim = {**shim_sources("fmi3"), **fmi_headers("fmi3"), "model.h": header}
     return {
         "kernel.c": kernel_c_source(folder),
@@ -77,7 +77,7 @@ def compile_module() -> bytes:
         linked = [*compiler, *LINK_FLAGS, *exported, *objects, "-o", "kernel.wasm"]
         run_compiler(linked, place, "WebAssembly")
         require_unedited_sources()
-        return (Path(place) / "kernel.wasm").read_bytes() + custom_section(SECTION, guid())
+        return (Path(place) / "kernel.wasm").read_bytes() + custom_section(SECTION, module_guid())
 
 
 def compile_units(
@@ -100,7 +100,7 @@ def custom_section(name: str, text: str) -> bytes:
     return bytes([0, len(content)]) + content
 
 
-def guid_inside(module: bytes) -> str:
+def guid_inside_module(module: bytes) -> str:
     found = re.search(SECTION.encode() + rb"(\{[0-9a-f-]{36}\})\Z", module)
     return found[1].decode() if found else ""
 

@@ -232,7 +232,7 @@ class Slave:
             self.refuse(format_message(self.model, self._memory, code))
         self._stale = False
 
-    def update_outputs(self) -> None:
+    def bring_up_to_date(self) -> None:
         if self._phase == INITIALIZING:
             self.initialize_if_stale()
         elif self._phase == STEPPING and self.model.refresh:
@@ -317,7 +317,7 @@ class Slave:
             self.variables_of_type(references, kind)
             self._checked[kind] = list(references)
         if self._stale:
-            self.update_outputs()
+            self.bring_up_to_date()
         return list(map(self._memory.__getitem__, references))
 
     def get_real(self, references: Sequence[int]) -> list[float]:

@@ -18,7 +18,7 @@ from .command import Command, Keywords, Options, option, option_names
 from .grammar import load_earlier_result
 from .notes import print_and_warn_of_frequencies, trivial_question_notes
 from .options import UNITS
-from .output import ResultFiles, digest, result_file_stem, write_unstored_netcdf
+from .output import ResultFiles, question_digest, result_file_stem, write_unstored_netcdf
 from .printing import describe, impact_lines
 
 UNIT_OF_OPTION = {name: ALIKE.get(unit, unit) for name, unit in {**UNITS, "eta": "eta"}.items()}
@@ -116,7 +116,7 @@ class FunctionCommand(Command):
             self.structures_by_state(structure),
             self.read_overlay_branches(structure, question),
         )
-        over = f"over_{digest(*branches)}" if branches else ""
+        over = f"over_{question_digest(*branches)}" if branches else ""
         asked, fresh = (structure, *others, question), None if self.stores else True
         name = result_file_stem(self.named or self.calls, self.source_file_stems(), *asked)
         files = {}

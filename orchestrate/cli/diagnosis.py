@@ -18,7 +18,7 @@ from . import grammar, output, printing
 from .answer import FunctionCommand
 from .command import Command, Keywords, Options, option
 from .options import OfSensors, OfStructure
-from .output import Reading, ResultFiles, digest, file_checksum, unit_override_note
+from .output import Reading, ResultFiles, file_checksum, question_digest, unit_override_note
 
 log = logging.getLogger(__name__)
 RECOMMENDED = (  # variables of a plan
@@ -127,7 +127,7 @@ what it gives:
         read_as = [self.channels, self.participation, *self.given_options(Reading).items()]
         checksums = [file_checksum(path) for path in (sweep.path, *self.other)]
         number = f"_sweep{sweep.number}" if sweep.number else ""
-        return f"diagnose_{sweep.path.stem}{number}_{digest(checksums, guess, read_as)}"
+        return f"diagnose_{sweep.path.stem}{number}_{question_digest(checksums, guess, read_as)}"
 
     def read_sweeps_and_refusals(self) -> tuple[dict[Sweep, xr.Dataset], list[str]]:
         from ..diagnosis.fit import checked_record_data

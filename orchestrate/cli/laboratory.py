@@ -19,7 +19,7 @@ from . import grammar, output, printing
 from .answer import FunctionCommand, Runs
 from .command import Command, Keywords, Options, option, option_names, required_by_argument
 from .options import Beside, OfSensors, OfStructure
-from .output import Reading, ResultFiles, digest, unit_override_note
+from .output import Reading, ResultFiles, question_digest, unit_override_note
 
 
 class ExcitationKind(NamedTuple):
@@ -178,7 +178,8 @@ class Shake(
             return
         excitation = None if self.shaker else question["excitation"]
         for state, data in results.items():
-            own = "" if self.store else digest(sensor.label, sensor.rate)  # one file, one name
+            # one file, one name
+            own = "" if self.store else question_digest(sensor.label, sensor.rate)
             path = files.path_with_suffixes(state, "sensors", own)
             record = orchestrate.measure(data, sensor, excitation=excitation)
             for ending in dict.fromkeys(("nc", *(one for one in files.formats if one != "xlsx"))):

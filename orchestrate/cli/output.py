@@ -172,10 +172,10 @@ def check_output_folder(folder: Path, option: str = "--output") -> None:
 def result_file_stem(command: str, sources: Sequence[Any], *asked: Any) -> str:
     stems = [Path(source).stem for source in sources]
     own = [match[1] if (match := OWN_NAME.fullmatch(stem)) else stem for stem in stems]
-    return f"{command}_{'_'.join(own)}_{digest(*asked)}"
+    return f"{command}_{'_'.join(own)}_{question_digest(*asked)}"
 
 
-def digest(*arguments: Any) -> str:
+def question_digest(*arguments: Any) -> str:
     def to_json(value: Any) -> Any:
         if hasattr(value, "parameters"):  # of a structure, a drive
             return value.parameters()

@@ -19,7 +19,7 @@ from .answer import FunctionCommand, Only, Runs
 from .command import Keywords, Options, option
 from .drive import DriveCommand, OfController, OfRamp, OfSchedule, Stepped
 from .options import OfStructure, Over
-from .output import OfBoth, ResultFiles, Results, Stored, digest, fmus_by_model
+from .output import OfBoth, ResultFiles, Results, Stored, fmus_by_model, question_digest
 
 if TYPE_CHECKING:
     from ..weak_drive.couple import CoupleJob
@@ -106,9 +106,8 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         self.job, self.stationary = jobs[0], None
         if self.branches:
             delaminated = next(iter(states.values())).as_delaminated()
-            name = (
-                f"branches_{'_'.join(self.source_file_stems())}_{digest(delaminated, *others)}.nc"
-            )
+            own = question_digest(delaminated, *others)
+            name = f"branches_{'_'.join(self.source_file_stems())}_{own}.nc"
             running = self.running_keywords(self.output / name)
             self.stationary = orchestrate.drive_branch(delaminated, *others, **running)
         return {state: load_result(files[state].result) for state in states}

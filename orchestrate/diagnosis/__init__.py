@@ -8,7 +8,7 @@ module                   idea
 :mod:`.response_signs`   signs of accelerations over time
 :mod:`.drive_signs`      signs of a run on a weak drive
 :mod:`.undamaged`        the sound structure that a record is compared with: a linear oscillator
-:mod:`.opening`          the force that would open the faces of a sound structure, in closed form
+:mod:`.opening_force`    the force that would open the faces of a sound structure, in closed form
 :mod:`.plan_test`        the lowest level at which ``detect`` decides, by rehearsals
 :mod:`.settings`         every threshold and effort, in one place that a caller reaches
 :mod:`.order_windows`    orders of a record's channels in short windows, and the floor between them

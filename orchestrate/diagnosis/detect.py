@@ -27,7 +27,7 @@ from .evidence import Participation
 from .fit import Results, checked_delaminated_guess, checked_free_parameters, checked_record_data
 from .hypotheses import FREE
 from .impact_timing import measure_strikes
-from .opening_measures import order_2_thresholds, smallest_visible_openings
+from .opening_measures import order_2_thresholds, smallest_visible_opening_by_window
 from .search_job import (
     RecordData,
     SearchJob,
@@ -364,7 +364,7 @@ def record_findings(data: RecordData, guess: Structure, is_guessed: bool) -> Fin
     evidence, channels = cached_evidence(data), cached_channels(data)
     even = cached_opening_measures(data)
     shut = SoundStructure.from_structure(guess).f
-    opening = smallest_visible_openings(evidence, guess.m1, guess.m2)
+    opening = smallest_visible_opening_by_window(evidence, guess.m1, guess.m2)
     observed = evidence.frequency[np.isfinite(opening)]
     response = (np.abs(evidence.measured_orders[:, 0]) / evidence.level).max(axis=0)
     low, high = sorted((guess.f1, guess.f2))

@@ -15,7 +15,7 @@ from ..fmu import Player
 from ..laboratory.pieces import Floats
 from ..model import Structure
 from .evidence import Evidence
-from .opening import unit_opening_force
+from .opening_force import unit_opening_force
 from .single_mass import SingleMass
 from .undamaged import SoundStructure
 

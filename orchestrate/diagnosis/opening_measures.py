@@ -76,7 +76,7 @@ def order_2_thresholds(evidence: Evidence) -> Floats:
     return np.asarray(np.where(quiet, np.nan, found))
 
 
-def smallest_visible_openings(evidence: Evidence, m1: float, m2: float) -> Floats:
+def smallest_visible_opening_by_window(evidence: Evidence, m1: float, m2: float) -> Floats:
     """Return the smallest opening that would be seen in each window, m; NaN where little moves."""
     shares = np.array([(m2, m1)[mass] for mass in evidence.sensor_masses]) / (m1 + m2)
     order2 = order_2_thresholds(evidence) * rms_of_order_1(evidence)

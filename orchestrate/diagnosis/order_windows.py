@@ -295,7 +295,7 @@ def least_squares_matrix(window: Window, sample_rate: float) -> Complexes:
     """Compute the least-squares matrix of a window, shape (orders, samples)."""
     orders = np.array([*ORDERS, *OFF_ORDERS])
     resolved = np.flatnonzero(orders * window.frequency <= NYQUIST * sample_rate)
-    waves = waves_of_orders(window.phase)
+    waves = waves_of_orders_and_off_orders(window.phase)
     moving = window.offset * waves[[row for row in resolved if orders[row] % 1.0 == 0.0]]
     waves = waves[resolved]
     parts = (waves.imag, waves.real, moving.imag, moving.real)
@@ -310,8 +310,8 @@ def least_squares_matrix(window: Window, sample_rate: float) -> Complexes:
     return matrix
 
 
-def waves_of_orders(phase: Floats) -> Complexes:
-    """Return exp(i n phase) of each of `ORDERS` and `OFF_ORDERS`, by products of two."""
+def waves_of_orders_and_off_orders(phase: Floats) -> Complexes:
+    """Return exp(i n phase) of each of `ORDERS`, then `OFF_ORDERS`, by products of two."""
     half, off = np.exp(1j * np.outer((0.5, 0.37), phase))
     first = half * half
     second = first * first

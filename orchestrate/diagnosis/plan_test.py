@@ -34,7 +34,7 @@ from ..running.runner import compute_dataset
 from .decision_rule import DELAMINATED, NOT_DESCRIBED, NOT_SEEN, UNDECIDED, Beam
 from .detect import record_findings
 from .impact_timing import TIMING
-from .opening import largest_unit_opening_force, max_steady_sweep_rate
+from .opening_force import largest_unit_opening_force, max_steady_sweep_rate
 from .search_job import RecordData
 from .undamaged import SoundStructure
 

@@ -65,8 +65,8 @@ class ClosedForm:
         shares = np.array([0.0, 1.0] if wall else [m1, m2]) / (1.0 if wall else m1 + m2)
         share = float(shares[1])
         eta = excitation.frequency / omega
-        damping = values_per_oscillator(structure.d1 / m1, structure.d2 / m2, share) / (2.0 * omega)
-        stiffness = values_per_oscillator(structure.k1 / m1, structure.k2 / m2, share) / unit
+        damping = append_joint_values(structure.d1 / m1, structure.d2 / m2, share) / (2.0 * omega)
+        stiffness = append_joint_values(structure.k1 / m1, structure.k2 / m2, share) / unit
         stiffness[0] = 1.0
         if wall:
             damping[:], stiffness[:] = damping[0], 1.0
@@ -76,10 +76,10 @@ class ClosedForm:
         level = excitation.amplitude * excitation.frequency**2 if shaken else unit * length
         push, force1, force2 = (each / level for each in excitation.pushes)  # m/s2 that is 1 here
         free = 0.0 if wall else 1.0
-        drive = values_per_oscillator(shaken + force1 / m1, free * shaken + force2 / m2, share)
+        drive = append_joint_values(shaken + force1 / m1, free * shaken + force2 / m2, share)
         with np.errstate(divide="ignore", invalid="ignore"):
             cosine, sine = -loss / reach * drive, detuning / reach * drive
-        pushes = values_per_oscillator(0.0 - push, free * (0.0 - push), share)
+        pushes = append_joint_values(0.0 - push, free * (0.0 - push), share)
         gap_offset = structure.gap_offset / length if structure.gap_offset else 0.0
         limit = structure.stroke / length if structure.stroke else np.inf
         load = gap_offset * stiffness[1] * np.array([0.0, 1.0, share, share])
@@ -193,10 +193,10 @@ class ClosedForm:
         """Return the contact force f (18) at phases, from mass 1 at an end; < 0: pressed."""
         constant = float(self.load[1] + (self.push[1] - self.push[0]))
         at_end = constant - self.stiffness[1] * self.gap_at_end(outer)
-        linear = self.motion_part_of_force(position, velocity, outer)
+        linear = self.motion_part_of_contact_force(position, velocity, outer)
         return linear + self.harmonic_part_of_force(phase, outer) + separating_sign(outer) * at_end
 
-    def motion_part_of_force(
+    def motion_part_of_contact_force(
         self, position: Floats, velocity: Floats, outer: Ends = False
     ) -> Floats:
         """Return what position and velocity add to f (18), or their derivatives to f's."""
@@ -208,7 +208,8 @@ def separating_sign(outer: Ends) -> Floats:
     return np.where(outer, -1.0, 1.0)
 
 
-def values_per_oscillator(mass1: float, mass2: float, share: float) -> Floats:
-    """Return what each mass has, and twice their mean: what both have as one, by mass 2's share."""
-    both = mass1 + share * (mass2 - mass1)
-    return np.array([mass1, mass2, both, both])
+def append_joint_values(of_mass1: float, of_mass2: float, mass2_share: float) -> Floats:
+    """Return the values of mass 1, of mass 2, and two times the value of both moving as one."""
+    # that is the mean of the first two, weighted by the share of mass 2 in the masses
+    joint = of_mass1 + mass2_share * (of_mass2 - of_mass1)
+    return np.array([of_mass1, of_mass2, joint, joint])

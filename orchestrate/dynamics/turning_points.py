@@ -156,9 +156,9 @@ def contact_pressure_and_derivatives(
     acceleration = rates[:, 2]
     jerk = form.drive[2] * form.eta * np.cos(phase) - 2.0 * form.damping[2] * acceleration
     jerk -= form.stiffness[2] * velocity
-    first = form.motion_part_of_force(velocity, acceleration, outer)
+    first = form.motion_part_of_contact_force(velocity, acceleration, outer)
     first = first + form.eta * form.harmonic_part_of_force(phase + 0.5 * np.pi, outer)
-    second = form.motion_part_of_force(
+    second = form.motion_part_of_contact_force(
         acceleration, jerk, outer
     ) - form.eta**2 * form.harmonic_part_of_force(phase, outer)
     return -form.contact_force(phase, position, velocity, outer), -first, -second

@@ -37,7 +37,7 @@ def find_or_compile_library(source: Path, folder: str | PathLike[str] | None = N
     """Return the path of a C source's shared library, compiled if missing or out of date."""
     platform = platform_of_this_machine()
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
-    token = sources.guid(source)
+    token = sources.library_guid(source)
     try:
         name = sources.library_name(source, platform)
         paths = [candidate / FORM / name for candidate in folders]

@@ -125,7 +125,7 @@ def log_first_export(folder: Path, level: int) -> None:
 def current_guid(form: str, name: str) -> str:
     """Return the GUID that an FMU of this form and model exported from the present sources has."""
     require_known(name, form)
-    return sources.guid(name, form)
+    return sources.fmu_guid(name, form)
 
 
 def require_known(name: str, form: str) -> None:

@@ -42,7 +42,7 @@ def parse_unit(name: str) -> Unit | None:
             sign = -1 if part == "/" else sign
             continue
         match = PART.fullmatch(part)
-        symbol = parse_unit_symbol(match["symbol"]) if match else None
+        symbol = parse_prefixed_symbol(match["symbol"]) if match else None
         if match is None or symbol is None:
             return None
         power = sign * int(match["power"] or 1)
@@ -52,7 +52,7 @@ def parse_unit(name: str) -> Unit | None:
     return Unit({base: power for base, power in exponents.items() if power}, factor)
 
 
-def parse_unit_symbol(text: str) -> Unit | None:
+def parse_prefixed_symbol(text: str) -> Unit | None:
     """Return the unit of a symbol, with a prefix or without; None if it is not known."""
     for prefix, factor in PREFIXES.items():
         known = SYMBOLS.get(text.removeprefix(prefix)) if text.startswith(prefix) else None

@@ -45,7 +45,7 @@ class WebKernel:
 def find_or_compile_web_kernel(folder: str | PathLike[str] | None = None) -> WebKernel:
     """Return the models and loops as WebAssembly; compile them unless the present are there."""
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
-    guid = sources.guid()
+    guid = sources.module_guid()
     variables = {name: sources.value_references(name) for name in sources.MODELS}
     for path in (base / FILE for base in folders):
         module = read_current_module(path, guid)
@@ -64,7 +64,7 @@ def find_or_compile_web_kernel(folder: str | PathLike[str] | None = None) -> Web
 def read_current_module(path: Path, guid: str) -> bytes:
     """Return a WebAssembly file's bytes if it has the present sources' GUID, else ``b""``."""
     module = path.read_bytes() if path.is_file() else b""
-    return module if sources.guid_inside(module) == guid else b""
+    return module if sources.guid_inside_module(module) == guid else b""
 
 
 def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:

@@ -236,7 +236,7 @@ def convert_to_si(
     """Convert a file's columns to SI: return times in s or None, channels, record attributes."""
     assignment = assign_columns(table, columns)
     indices = dict(assignment.indices)
-    check_no_samples_skipped(table, indices)
+    check_unassigned_counters(table, indices)
     assignment.warn_of_guesses(table)
     warn_of_lines_left_out(table)
     read_as = {"columns": assignment.format(table)}
@@ -374,10 +374,10 @@ def column_indices_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, 
     return dict(zip(wanted, numbers, strict=False))
 
 
-def check_no_samples_skipped(table: Columns, indices: Mapping[str, int]) -> None:
+def check_unassigned_counters(table: Columns, assigned: Mapping[str, int]) -> None:
     """Raise if an unassigned column is a counter that skips numbers."""
     for i, column in enumerate(table.columns):
-        row = None if i in indices.values() or column.text else first_skipped_row(column.values)
+        row = None if i in assigned.values() or column.text else first_skipped_row(column.values)
         if row is not None:
             text = f"{column.values[row]:.9g} after {column.values[row - 1]:.9g}"
             expected = "expected equal steps: samples are lost, cut the record there"

@@ -81,6 +81,7 @@ class Shock(ExcitationSignal):
         return self.length * angles[:-1] / math.pi, error
 
     def _pulse_acceleration(self, time: Floats) -> Floats:
+        """Return the acceleration at times within the pulse, m/s2; it does not hold outside."""
         part = (time - self.delay) / self.length
         if self.shape == "half-sine":
             return self.peak * np.sin(np.pi * part)

@@ -93,8 +93,8 @@ def free_vibration_roots(structure: Structure, drive: Drive) -> np.ndarray:
     return np.asarray((box * (pull + masses) + pull * masses).roots())
 
 
-def speed_between_resonances(structure: Structure, drive: Drive) -> float:
-    """Return the speed over omega that divides the box's own resonance from the structure's."""
+def eta_between_box_and_bonded_resonance(structure: Structure, drive: Drive) -> float:
+    """Return the speed over omega that divides the box's own resonance from the bonded one."""
     # least torque between both: folds below are of the box's own resonance, folds above are not
     frequencies = np.abs(free_vibration_roots(structure, drive))
     high = float(frequencies.max())
@@ -110,7 +110,7 @@ def folds(
     numerator, denominator = slope_polynomials(structure, drive)
     roots = numerator.roots()
     real = np.sort(roots.real[np.abs(roots.imag) < 1e-6 * np.abs(roots)])
-    low = speed_between_resonances(structure, drive) if low is None else low
+    low = eta_between_box_and_bonded_resonance(structure, drive) if low is None else low
     speeds = [polish_root(numerator, root) for root in real if low <= root <= high]
     return [
         BifurcationPoint(float(stationary_voltage(structure, drive, w)), w, FOLD) for w in speeds
@@ -170,7 +170,8 @@ def neimark_sacker_points(
         sums = np.add.outer(roots, roots)[np.triu_indices(len(roots), 1)]
         return float(np.prod(-sums / np.abs(sums).max()).real)
 
-    peak, low = bonded_resonance(structure, drive), speed_between_resonances(structure, drive)
+    peak = bonded_resonance(structure, drive)
+    low = eta_between_box_and_bonded_resonance(structure, drive)
     speeds = np.linspace(max(0.8 * peak, low), 1.5 * peak, count)
     signs = np.sign([hurwitz_product(Omega) for Omega in speeds])
     points = []

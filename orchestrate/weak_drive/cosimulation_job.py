@@ -80,9 +80,9 @@ class CosimulationRun(Run):
         self.divides_first = "box_acceleration" not in connection.links and not fixed
         super().__init__(master, inputs)
 
-    def run_items(self, items: range) -> Table:
-        """Do the steps of some items; return nodes, cubics, work, and what is recorded."""
-        steps = range(items.start * self.parts, items.stop * self.parts)
+    def run_communication_steps(self, communication_steps: range) -> Table:
+        """Do communication steps, each in `parts`; return nodes, cubics, work, what is recorded."""
+        steps = range(communication_steps.start * self.parts, communication_steps.stop * self.parts)
         recorded = []
         if self.master.connection.recorded and not steps.start:
             start = [*self.inputs.start_values().values()]
@@ -201,7 +201,7 @@ class CosimulateJob(CoupledJob, Question):
                     coupling = CosimulationRun(self, one, drive, parts, float(response[0]))
                     if before:
                         coupling.set_state(before)
-                    found = {**coupling.run_items(steps), **coupling.get_state()}
+                    found = {**coupling.run_communication_steps(steps), **coupling.get_state()}
                     coupling.close()
                     warned |= drive.warnings
             table |= {f"{name} {parts}": values for name, values in found.items()}

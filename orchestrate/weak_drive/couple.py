@@ -115,7 +115,7 @@ class CoupleJob(MotorJob):
         further = [(way, jump, record) for way, jumps, record in each for jump in jumps[1:]]
         directions, every, records_of = zip(*first, *further, strict=True)
         shown = [
-            record.rows_of_jump(*jump[1:]) if jump else [math.nan] * len(DONE)
+            record.row_positions_of_jump(*jump[1:]) if jump else [math.nan] * len(DONE)
             for jump, record in zip(every, records_of, strict=True)
         ]
         columns = ramp_jump_variables(records[0].forward_table(), shown)

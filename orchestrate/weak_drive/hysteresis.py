@@ -239,7 +239,7 @@ class HysteresisLoop:
             voltage = low.voltage + part * change
             if voltage in self.left_out:
                 continue
-            point = self.hold_within_step(low, voltage, high, must_last=False)
+            point = self.hold_from_low_end(low, voltage, high, requires_lifetime=False)
             if math.isfinite(point.speed):
                 points.insert(i + 1, point)
                 return True
@@ -251,7 +251,7 @@ class HysteresisLoop:
     ) -> Jump | None:
         """Replace a step's end by what lasts there, drop unsure ones after; return the jump."""
         low, high = points[i : i + 2]
-        landed = self.hold_within_step(low, high.voltage, high, must_last=True)
+        landed = self.hold_from_low_end(low, high.voltage, high, requires_lifetime=True)
         points[i + 1] = high = landed if math.isfinite(landed.speed) else high
         is_brief = low.lasts < self.required_lifetime(low, high)
         if is_brief or self.excess_change(points, i, jumps) <= 0.0:
@@ -289,14 +289,15 @@ class HysteresisLoop:
                 return False
         return low.error == 0.0
 
-    def hold_within_step(
-        self, low: HeldPoint, voltage: float, high: HeldPoint, must_last: bool
+    def hold_from_low_end(
+        self, low: HeldPoint, voltage: float, high: HeldPoint, requires_lifetime: bool
     ) -> HeldPoint:
-        """Hold a voltage within a step or at its end; the motion before has to last, if it does."""
-        # a motion of which no growth is known only with `must_last`
+        """Hold a voltage within a step or at its high end, from the motion at its low end."""
+        # a motion that stays nearer to that of the low end is held on where its disturbances may
+        # grow: with `requires_lifetime` at least that long, else only if their growth is known
         point = self.hold_from(low, voltage)
         if abs(point.speed - low.speed) < abs(point.speed - high.speed):
-            lifetime = self.required_lifetime(point, high) if must_last else 0.0
+            lifetime = self.required_lifetime(point, high) if requires_lifetime else 0.0
             return self.hold_until_lasting(point, high, lifetime)
         return point._replace(time=max(point.time, high.time))
 
@@ -307,7 +308,7 @@ class HysteresisLoop:
 
     def hold_until_lasting(self, point: HeldPoint, high: HeldPoint, lifetime: float) -> HeldPoint:
         """Hold a motion until it is known to last; return it, or what it has become."""
-        # for the time `lifetime`, s, if it is not known how disturbances of it grow
+        # at least for the time `lifetime`, s, unless disturbances of it are known to decay
         rate = self.growth_rate(point)
         if rate <= 0.0:
             return point._replace(lasts=math.inf)

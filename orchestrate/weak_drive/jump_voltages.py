@@ -125,7 +125,7 @@ def ramp_jump_voltage_and_speed(
     """Return voltage and speed before at which a ramp shows a jump, with NaN where it does not."""
     if jump is None:
         return [math.nan] * len(SHOWN)
-    before, half, _ = RampRecord(job, table, not down).rows_of_jump(*jump[1:])
+    before, half, _ = RampRecord(job, table, not down).row_positions_of_jump(*jump[1:])
     rows = np.arange(len(table["time"]))
     at = zip((half, before), SHOWN, strict=True)
     return [float(np.interp(row, rows, table[name])) for row, name in at]

@@ -64,8 +64,10 @@ class RampRecord:
         step = math.ceil(self.table["time"][row] / self.job.scheme.h)
         return min(step, self.job.step_count() - 1)
 
-    def rows_of_jump(self, low: float, high: float, before: float, after: float) -> list[float]:
-        """Return the rows at which a jump begins, is half done and ends; NaN where it does not."""
+    def row_positions_of_jump(
+        self, low: float, high: float, before: float, after: float
+    ) -> list[float]:
+        """Return where, in rows, a jump begins, is half done and ends; NaN where it does not."""
         # the jump is from a voltage and the speed before to another one and the speed after
         first, fall = low - before, (low - before) - (high - after)
         for leg in self.rows_by_leg():

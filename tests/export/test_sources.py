@@ -61,7 +61,7 @@ def test_no_import_of_ours_is_overlooked():
 def test_a_change_of_any_source_is_another_guid(monkeypatch, form):
     """Kernel, table, texts, exporter and C shim; another form's or model's is none of them."""
     name, python = "TwoMassImpactOscillator", form == forms.PYTHON_FORM
-    before, read = forms.guid(name, form), Path.read_bytes
+    before, read = forms.fmu_guid(name, form), Path.read_bytes
     for changed, same in (
         ("kernels/numerics/elementary.py", False),
         ("models/oscillator/variables.py", False),
@@ -81,7 +81,7 @@ def test_a_change_of_any_source_is_another_guid(monkeypatch, form):
             return read(path) + (b"#" if path == sources.ROOT / changed else b"")
 
         monkeypatch.setattr(Path, "read_bytes", altered)
-        assert (forms.guid(name, form) == before) == same, changed
+        assert (forms.fmu_guid(name, form) == before) == same, changed
 
 
 def test_sources_edited_during_an_export_are_named(monkeypatch, tmp_path):

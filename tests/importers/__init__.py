@@ -125,7 +125,7 @@ def rebuild_shim(
 ) -> Path:
     """Compile an FMU's binary from its own sources with other options; return its path."""
     folder.mkdir(parents=True, exist_ok=True)
-    token = native_form.guid(model, version)
+    token = native_form.native_fmu_guid(model, version)
     header = model_header(sources.load_model(model), token, sources.model_digest(model))
     files = {**native_form.shim_sources(version), **native_form.fmi_headers(version)}
     files |= {"model.h": header, "kernel.o": objects["x86_64-linux"]}

@@ -119,7 +119,7 @@ def test_each_form_has_a_guid_of_its_own(without_binaries):
     assert set(without_binaries) == {
         *("fmi2-sources", "fmi3-sources", "fmi2-plain-sources", "fmi3-plain-sources")
     }
-    guids = [forms.guid("TwoMassImpactOscillator", form) for form in forms.ALL_FORMS]
+    guids = [forms.fmu_guid("TwoMassImpactOscillator", form) for form in forms.ALL_FORMS]
     assert len(set(guids)) == len(forms.ALL_FORMS) == 9
 
 
@@ -133,7 +133,7 @@ def test_a_description_of_sources_alone_is_true(without_binaries, fmus):
         assert "sources/kernel.c" in names and "there is no binary inside" in page
         assert validate_fmu(str(path)) == []
         found = fmpy.read_model_description(str(path))
-        assert found.guid == forms.guid("TwoMassImpactOscillator", form)
+        assert found.guid == forms.fmu_guid("TwoMassImpactOscillator", form)
         if "plain" not in form:
             whole = fmpy.read_model_description(str(fmus[form[:4]]))
             assert repr(found.coSimulation) == repr(whole.coSimulation)

@@ -264,16 +264,16 @@ def phasors_at(m, tau):  # inline
     return x_a, x_b, v_a, v_b, cosine, sine
 
 
-def set_phasors_at_end(m, t):
-    """Set the phasors at a near end by six Taylor terms, which leave less than 1e-17."""
-    if t * m[at.RATE] > NEAR or m[at.SECULAR] != 0.0:  # rarely
+def set_phasors_at_near_end(m, age):
+    """Set the phasors at an end so near that six Taylor terms leave less than 1e-17."""
+    if age * m[at.RATE] > NEAR or m[at.SECULAR] != 0.0:  # rarely
         return
     p = at.POINT
-    x, v = free_part_by_series(m, oscillator_of_part_a(m), m[p], m[p + 2], t)
+    x, v = free_part_by_series(m, oscillator_of_part_a(m), m[p], m[p + 2], age)
     x_b, v_b = free_part_by_series(
-        m, at.OSCILLATOR_2, m[p + 1], m[p + 3], t
+        m, at.OSCILLATOR_2, m[p + 1], m[p + 3], age
     )  # zeros but in a flight
-    angle = m[at.NODE_ETA] * t
+    angle = m[at.NODE_ETA] * age
     square = angle * angle
     c = 1.0 - square * (0.5 - square * (1.0 / 24.0))
     s = angle * (1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0)))

@@ -22,7 +22,7 @@ from .nodes import (
     max_nodes,
     phasors_at_next_node,
     phasors_from_closed_form,
-    set_phasors_at_end,
+    set_phasors_at_near_end,
     write_phasors,
 )
 
@@ -166,7 +166,7 @@ def take_step(m, tau, reach, step, found, values):  # inline
         m[at.END] = tau + step
         m[at.END_KIND] = kind
         if m[at.SERIES] == 0.0:
-            set_phasors_at_end(m, m[at.END] - tau)
+            set_phasors_at_near_end(m, m[at.END] - tau)
     m[at.CLEAR] = m[at.RIGHT_AGE] if step >= reach else tau + step
 
 

@@ -146,11 +146,13 @@ def set_event_drive(m):
 
 
 def event_drive(m, order, cosine, sine):
+    """Return what the forcing adds to a derivative of the event function; ``order`` from 1 on."""
     i = at.EVENT_DRIVE + 2 * order - 2
     return m[i] * cosine + m[i + 1] * sine
 
 
 def event_drive_bound(m, order):
+    """Return a bound of :func:`event_drive` over all phases; ``order`` from 1 on."""
     i = at.EVENT_DRIVE + 2 * order - 2
     return abs(m[i]) + abs(m[i + 1])
 

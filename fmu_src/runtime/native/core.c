@@ -195,7 +195,7 @@ static Status initialize_if_stale(Instance *instance, const char *call) {
     return state->stale ? check_kernel_code(instance, call, kernel_initialize(state->memory, state->start_time)) : OK;
 }
 
-Status update_outputs(Instance *instance) {
+Status bring_up_to_date(Instance *instance) {
     State *state = &instance->state;
     if (state->phase == INITIALIZING) return initialize_if_stale(instance, "get");
 #if REFRESH

@@ -84,7 +84,7 @@ Status require_settable(Instance *, const char *call, const Variable *, double v
 
 /* Set a variable that may be set: a polynomial input begins here. */
 void set_value(Instance *, unsigned reference, double value);
-Status update_outputs(Instance *);
+Status bring_up_to_date(Instance *);
 
 Status require_readable(Instance *, const char *call, const Variable *);
 

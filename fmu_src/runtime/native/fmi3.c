@@ -103,7 +103,7 @@ static size_t stretch(Instance *instance, const char *call, fmi3ValueReference r
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_t count, fmi3Float64 values[], size_t value_count) {
     static const char *const call = "fmi3GetFloat64";
     Instance *instance = c;
-    if (!instance || !require_phase(instance, call, READABLE) || refuse_missing_array(instance, call, count, refs, values) || update_outputs(instance) != OK) return fmi3Error;
+    if (!instance || !require_phase(instance, call, READABLE) || refuse_missing_array(instance, call, count, refs, values) || bring_up_to_date(instance) != OK) return fmi3Error;
     size_t place = 0;
     for (size_t i = 0; i < count; i++) {
         size_t first, size = stretch(instance, call, refs[i], &first);
@@ -135,7 +135,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_
         Instance *instance = c;                                                                                                                  \
         if (!instance || !require_phase(instance, call, READABLE) || refuse_missing_array(instance, call, count, refs, values)) return fmi3Error;                   \
         if (value_count != count) return refuse3(instance, call, "nValues: expected one for each value reference");                            \
-        if (update_outputs(instance) != OK) return fmi3Error;                                                                                           \
+        if (bring_up_to_date(instance) != OK) return fmi3Error;                                                                                           \
         for (size_t i = 0; i < count; i++) {                                                                                                     \
             const Variable *variable = find_variable(instance, call, refs[i], KIND);                                                                      \
             if (!variable || require_readable(instance, call, variable) != OK) return fmi3Error;                                                          \
@@ -222,7 +222,7 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference ref
     Instance *instance = c;
     if (!instance || !require_phase(instance, call, CALCULATED) || refuse_missing_array(instance, call, count, refs, values) || refuse_missing_array(instance, call, count, orders, values))
         return fmi3Error;
-    if (update_outputs(instance) != OK) return fmi3Error;
+    if (bring_up_to_date(instance) != OK) return fmi3Error;
     double memory[MEMORY_SIZE];
     for (int write = 0; write < 2; write++) {
         size_t place = 0;

@@ -41,7 +41,7 @@
 #define TYPE_NAMES OWN(TYPE_NAMES)
 #define require_settable OWN(require_settable)
 #define set_value OWN(set_value)
-#define update_outputs OWN(update_outputs)
+#define bring_up_to_date OWN(bring_up_to_date)
 #define require_readable OWN(require_readable)
 #define require_rate OWN(require_rate)
 #define copy_with_rates OWN(copy_with_rates)

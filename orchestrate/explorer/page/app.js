@@ -3,7 +3,7 @@
 import { BasinPanel } from "./basin_panel.js";
 import { diagramCommand, motionCommand } from "./command.js";
 import { Controls } from "./controls.js";
-import { WorkerPool } from "./worker_pool.js";
+import { WorkerPool, workerCount } from "./worker_pool.js";
 import { nearestIndex, startOfResponse } from "./diagram.js";
 import { listenToDiagram } from "./diagram_input.js";
 import { DrivePanel } from "./drive_panel.js";
@@ -52,8 +52,7 @@ export class App {
     this.eta = NaN;
     this.carried = false; // whether the frequency comes from the beam before, in other units
     this.waiting = false; // for the start of the chosen response
-    const size = Math.max(1, Math.min(4, (navigator.hardwareConcurrency || 2) - 1));
-    this.pool = new WorkerPool(worker, compiled, size);
+    this.pool = new WorkerPool(worker, compiled, workerCount());
     this.pool.onerror = (text, task) => (task === "motion" ? this.inspector.showFailure(text) : this.showStatus(text));
     this.regions = new Regions(/** @type {HTMLCanvasElement} */ (at("diagram")), this.pool, diagram, table, () => this.updateDiagramTexts());
     this.inspector = new Inspector(at, this.pool, table.record, () => this.updateMotionTexts());

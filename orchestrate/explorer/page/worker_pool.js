@@ -2,6 +2,11 @@
 
 /** @typedef {{cancel: () => void, done: Promise<void>}} Order */
 
+/** As many workers as cores, less one for the page, and at most four. */
+export function workerCount() {
+  return Math.max(1, Math.min(4, (navigator.hardwareConcurrency || 2) - 1));
+}
+
 export class WorkerPool {
   /** @param {string} source of the worker @param {Compiled} compiled @param {number} size */
   constructor(source, compiled, size) {

@@ -51,7 +51,7 @@ def motion_by_10_and_11(frequency: float, damping: float) -> Callable[[np.ndarra
     return motion
 
 
-def compare_displacement_scales(data: Datasets, claim: Claim) -> Measured:
+def compare_printed_displacement_scale(data: Datasets, claim: Claim) -> Measured:
     """Compare x/a eta^2 and x/(a eta^2) of (3), by the steady amplitude."""
     steady = 1.0 / math.hypot(1.0 - ETA**2, 2.0 * D * ETA)  # amplitude of (6), unit forcing
     x_over_a = ETA**2 * steady  # of m x'' + d x' + k x = m a Omega^2 sin(Omega t)

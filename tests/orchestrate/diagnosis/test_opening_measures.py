@@ -8,7 +8,7 @@ from orchestrate.diagnosis.opening_measures import (
     measure_opening,
     order_2_thresholds,
     scaled_sensor_difference,
-    smallest_visible_openings,
+    smallest_visible_opening_by_window,
 )
 from tests.benches.bench import Bench
 from tests.benches.excitation import Swept
@@ -59,5 +59,5 @@ def test_what_would_have_been_seen_is_not_below_an_opening_that_was_not(sensors)
     gap, evidence = float(motion.largest_gap.max()), record_evidence(record)
     assert gap > 1e-5, "it opened"
     assert not measure_opening(evidence, np.zeros_like(evidence.measured_orders)).is_order_2_seen
-    stated = smallest_visible_openings(evidence, halves.m1, halves.m2)
+    stated = smallest_visible_opening_by_window(evidence, halves.m1, halves.m2)
     assert gap < np.nanmax(stated) < 5.0 * gap

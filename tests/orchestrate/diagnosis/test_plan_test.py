@@ -9,7 +9,7 @@ import pytest
 
 import orchestrate
 import orchestrate.diagnosis.plan_test as rehearsed
-from orchestrate.diagnosis.opening import max_steady_sweep_rate, unit_opening_force
+from orchestrate.diagnosis.opening_force import max_steady_sweep_rate, unit_opening_force
 from orchestrate.diagnosis.plan_test import (
     PlanJob,
     checked_sensors,

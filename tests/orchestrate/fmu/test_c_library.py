@@ -14,7 +14,7 @@ from orchestrate.fmu.c_library import SOURCES, find_or_compile_library
 from tests.faults import FILE_DAMAGE
 
 SOURCE = SOURCES[0]
-COMPILED = b"compiled " + sources.guid(SOURCE).encode()
+COMPILED = b"compiled " + sources.library_guid(SOURCE).encode()
 
 
 @pytest.fixture

@@ -136,7 +136,7 @@ def test_not_everything_is_borne_out_where_all_responses_are_of_one_kind(row):
 @pytest.mark.parametrize(
     "name",
     [
-        "compare_displacement_scales",
+        "compare_printed_displacement_scale",
         "compare_free_motions",
         "measure_momentum_gain",
         "compare_periods",

@@ -418,11 +418,11 @@ def test_where_a_speed_between_is_sought(monkeypatch):
     """In the middle, then nearer to the lower voltage."""
     loop, sought = Scripted(lambda *now: 0.0), []
 
-    def nowhere(low, voltage, high, must_last):
+    def nowhere(low, voltage, high, requires_lifetime):
         sought.append(voltage)
         return loop.at(voltage)._replace(speed=np.nan)
 
-    monkeypatch.setattr(loop, "hold_within_step", nowhere)
+    monkeypatch.setattr(loop, "hold_from_low_end", nowhere)
     points = line((1.5, 1.3, 0.0), (1.5019, 1.31, 0.0))
     assert not loop.insert_point_between(points, 0) and len(points) == 2
     assert sought == pytest.approx([1.5 + part * 1.9e-3 for part in (0.5, 0.25, 0.75)])
@@ -461,7 +461,7 @@ def test_a_motion_nearer_to_the_one_before_is_held_on(monkeypatch, speed, again,
     here = here._replace(time=1.0)
     monkeypatch.setattr(loop, "hold_from", lambda *asked: here)
     monkeypatch.setattr(loop, "hold_until_lasting", lambda point, high, least: least)
-    assert loop.hold_within_step(low, 1.501, high, lives) == (5.0 * lives if again else here)
+    assert loop.hold_from_low_end(low, 1.501, high, lives) == (5.0 * lives if again else here)
 
 
 def test_a_ramp_is_taken_up_in_the_middle_of_a_step_from_the_checkpoint_before(monkeypatch):
@@ -541,18 +541,18 @@ def record_of(slips):
 def test_where_a_ramp_shows_a_jump():
     """Late, where the slip falls from that before to that after; not at all if the ramp ends."""
     time, ramp = record_of([(0, 0.03), (800, 0.03), (900, 0.01), (2000, 0.01)])
-    rows = ramp.rows_of_jump(1.26, 1.2601, 1.23, 1.2501)
+    rows = ramp.row_positions_of_jump(1.26, 1.2601, 1.23, 1.2501)
     before, half, after = np.interp(rows, range(len(time)), time)
     assert before == pytest.approx(810.0, abs=15.0)
     assert half == pytest.approx(850.0, abs=15.0) and after == pytest.approx(890.0, abs=15.0)
-    assert np.isnan(ramp.rows_of_jump(1.26, 1.2601, 1.23, 1.2901)).all()
+    assert np.isnan(ramp.row_positions_of_jump(1.26, 1.2601, 1.23, 1.2901)).all()
     assert jump_labels(["up", "down", "up"]) == ["up", "down", "up 2"]
 
 
 def test_a_ramp_that_is_past_a_jump_before_its_voltage():
     """By an earlier one, its slip is below that after the jump from the first row on."""
     _, ramp = record_of([(0, 0.01), (2000, 0.005)])
-    assert np.isfinite(ramp.rows_of_jump(1.26, 1.2601, 1.23, 1.2401)).all()
+    assert np.isfinite(ramp.row_positions_of_jump(1.26, 1.2601, 1.23, 1.2401)).all()
 
 
 CLOSE = system_of(  # its folds, by its branch, at 1.13468 and 1.13041
