@@ -81,7 +81,7 @@ fmi2Status fmi2Reset(fmi2Component c) {
     fmi2Status NAME(fmi2Component c, const fmi2ValueReference refs[], size_t count, TYPE values[]) {                             \
         Instance *instance = c;                                                                                                  \
         if (!instance || !require_phase(instance, #NAME, READABLE) || refuse_missing_array(instance, #NAME, count, refs, values)) return fmi2Error; \
-        if (bring_up_to_date(instance) != OK) return fmi2Error;                                                                           \
+        if (bring_up_to_date(instance) != OK) return fmi2Error;                                                                         \
         for (size_t i = 0; i < count; i++) {                                                                                     \
             if (!find_variable(instance, #NAME, refs[i], KIND)) return fmi2Error;                                                         \
             double value = instance->state.memory[refs[i]];                                                                      \

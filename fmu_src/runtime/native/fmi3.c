@@ -135,7 +135,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_
         Instance *instance = c;                                                                                                                  \
         if (!instance || !require_phase(instance, call, READABLE) || refuse_missing_array(instance, call, count, refs, values)) return fmi3Error;                   \
         if (value_count != count) return refuse3(instance, call, "nValues: expected one for each value reference");                            \
-        if (bring_up_to_date(instance) != OK) return fmi3Error;                                                                                           \
+        if (bring_up_to_date(instance) != OK) return fmi3Error;                                                                                         \
         for (size_t i = 0; i < count; i++) {                                                                                                     \
             const Variable *variable = find_variable(instance, call, refs[i], KIND);                                                                      \
             if (!variable || require_readable(instance, call, variable) != OK) return fmi3Error;                                                          \
