@@ -52,8 +52,7 @@ class TimingSettings:
     one_sided: float = 0.59
     # see `Strikes`: rattling clamps, which are soft, make 0.21, faces 0.36
     blow: float = 0.28
-    # correlation of both sensors' blows: clamps with torsion that do not soften make -0.87, above 0
-    # it is one blow
+    # of both sensors' blows: clamps with torsion that soften less make -0.88; above 0 it is one
     opposite: float = -0.95
     together: float = 0.0
     order2: float = 0.025  # parts of some percent of the mass make 0.014, a stop 0.022
