@@ -28,7 +28,7 @@ from .references import (
     Reference,
     compute_reference_rows,
     run_and_record,
-    write_reference,
+    write_reference_files,
 )
 
 TABLES = Path(__file__).resolve().parents[1] / "docs" / "variables.md"
@@ -120,7 +120,7 @@ def main() -> None:
     forms = [[find_or_export(each.model, name).path for name in names] for each in REFERENCES]
     for reference, (fmu, with_tabulated_fields) in zip(REFERENCES, forms, strict=True):
         rows = compute_reference_rows(reference, fmu)
-        write_reference(reference, rows)
+        write_reference_files(reference, rows)
         draw_and_save_documentation(reference, fmu, rows)
         table = variable_tables_as_markdown(with_tabulated_fields)
         page = TABLES.read_text(encoding="utf-8")

@@ -102,7 +102,7 @@ def compute_reference_rows(reference: Reference, fmu: str | PathLike[str]) -> li
     return run_and_record(fmu, reference.times(), reference.outputs, inputs)
 
 
-def write_reference(reference: Reference, rows: Sequence[Sequence[float]]) -> None:
+def write_reference_files(reference: Reference, rows: Sequence[Sequence[float]]) -> None:
     """Write the three files of a cross-check reference: results, inputs, options."""
     folder = MODELS / reference.folder / "reference"
     folder.mkdir(exist_ok=True)

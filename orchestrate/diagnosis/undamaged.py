@@ -34,7 +34,7 @@ class SoundStructure:
 
     def with_gains_under_force(self, frequency: Floats, response: Floats) -> SoundStructure:
         """Return the oscillator under a force, with gains that are nearest to responses."""
-        model = transmissibility(frequency, self.f, self.zeta) - 1.0
+        model = complex_transmissibility(frequency, self.f, self.zeta) - 1.0
         gains = (response @ model.conj()).real / (np.abs(model) ** 2).sum()
         return replace(self, gains=tuple(gains.tolist()))
 
@@ -69,7 +69,7 @@ class SoundStructure:
 
     def response(self, frequency: Floats) -> Floats:
         """Return the acceleration over that of the box, or over the force: a row for each gain."""
-        moved = transmissibility(frequency, self.f, self.zeta)
+        moved = complex_transmissibility(frequency, self.f, self.zeta)
         return np.outer(self.gains, moved - 1.0) if self.gains else moved
 
     def acceleration(self, channels: Channels) -> Floats:
@@ -94,7 +94,7 @@ class SoundStructure:
         return Channels(channels.time, channels.sample_rate, names, np.stack(rows), channels.title)
 
 
-def transmissibility(frequency: Floats, f: float, zeta: float) -> Floats:
+def complex_transmissibility(frequency: Floats, f: float, zeta: float) -> Floats:
     """Return the absolute acceleration of an oscillator over that of its base, complex."""
     r = frequency / f
     loss = 2.0j * zeta * r

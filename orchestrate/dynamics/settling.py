@@ -124,12 +124,12 @@ def run_until_settled(
     settled: dict[int, SettledResponse | ReachedMotion] = {}
     known_states = [(motion, state) for motion in known for state in motion.states]
 
-    def add_settled(
-        starts: NDArray[np.intp], results: Responses, tolerance: float, n: list[int] | None = None
+    def record_responses(
+        indices: NDArray[np.intp], results: Responses, tolerance: float, n: list[int] | None = None
     ) -> None:
-        responses = responses_from(results, [point] * len(starts), tolerance, n)
-        for start, response in zip(starts.tolist(), responses, strict=True):
-            settled[start] = SettledResponse(response, done)
+        responses = responses_from(results, [point] * len(indices), tolerance, n)
+        for index, response in zip(indices.tolist(), responses, strict=True):
+            settled[index] = SettledResponse(response, done)
 
     done, left = 0, np.arange(len(ends))
     before, deviation = np.zeros(len(ends), dtype=int), np.full(len(ends), np.inf)
@@ -148,7 +148,7 @@ def run_until_settled(
         dying &= done >= settings.longest
         for chosen, tolerance in ((repeats, converged), (dying & ~repeats, loose)):
             rows = np.flatnonzero(chosen)
-            add_settled(left[rows], results.select(rows), tolerance, nearly[rows].tolist())
+            record_responses(left[rows], results.select(rows), tolerance, nearly[rows].tolist())
         rest = np.flatnonzero(~(repeats | dying) & (reached == 0))
         left, ends = left[rest], results.ends[rest]
         before, deviation = nearly[rest], results.deviations[rest]
@@ -158,5 +158,5 @@ def run_until_settled(
     if len(left):
         done += settings.irregular_samples
         own = LoopSettings(transient=0, samples=settings.irregular_samples)
-        add_settled(left, loop.simulate([point] * len(left), ends, own), converged)
+        record_responses(left, loop.simulate([point] * len(left), ends, own), converged)
     return [settled[i] for i in range(len(settled))]

@@ -100,13 +100,13 @@ class Motion:
         both = (loads[0] + loads[1]) / (s.m1 + s.m2)
         return np.where(touching, both, np.stack([loads[0] / s.m1, loads[1] / s.m2]))
 
-    def states_later(
-        self, states: Floats, touching: Flags, times: Floats, lengths: Floats
+    def states_after(
+        self, states: Floats, touching: Flags, begins: Floats, durations: Floats
     ) -> Floats:
-        """Compute the states later by given lengths of time, shape (n, 4), by Taylor series."""
-        series = self.displacement_series(states, touching, times)
+        """Compute the states after durations, shape (n, 4), each by one Taylor series."""
+        series = self.displacement_series(states, touching, begins)
         parts = series, series[1:]
-        return np.concatenate([evaluate_taylor(part, lengths) for part in parts]).T
+        return np.concatenate([evaluate_taylor(part, durations) for part in parts]).T
 
     def step_count(self, length: float) -> int:
         """Return the number of equal steps in which Taylor series cover a length of time."""
@@ -141,7 +141,7 @@ class Motion:
             root = first_time_below_zero(force, scale, stop - start)
             if root is not None:
                 return float(start + root)
-            state = self.states_later(state, touching, np.array([start]), np.array([stop - start]))
+            state = self.states_after(state, touching, np.array([start]), np.array([stop - start]))
         return float(begin)
 
     def _state_at(self, time: float) -> Floats:
@@ -155,7 +155,7 @@ class Motion:
             mesh = np.linspace(now, self.impact_times[i], 1 + count)
             for start, stop in zip(mesh[:-1], mesh[1:], strict=True):
                 at, length = np.array([start]), np.array([stop - start])
-                state = self.states_later(state, touching, at, length)
+                state = self.states_after(state, touching, at, length)
             state, touching = self.after_impulses(state, self.impulses[[i]]), self.sticks[[i]]
             now = float(self.impact_times[i])
         return state
@@ -274,11 +274,11 @@ def integrate_between_samples(
     for low, high in zip(bounds[:-1], bounds[1:], strict=True):
         now = order[low:high]
         last = now - 1
-        moved = motion.states_later(states[last], touching[last], nodes[last], lengths[last])
+        moved = motion.states_after(states[last], touching[last], nodes[last], lengths[last])
         states[now] = motion.after_impulses(moved, impulses[now])
         touching[now] = (touching[last] | begins[now]) & ~ends[now]
     last = np.append(np.flatnonzero(rank == 0)[1:] - 1, count - 1)
-    moved = motion.states_later(states[last], touching[last], nodes[last], lengths[last])
+    moved = motion.states_after(states[last], touching[last], nodes[last], lengths[last])
     moved = motion.after_impulses(moved, impulses[last + 1])
     target = np.searchsorted(motion.times, nodes[last + 1])
     exact = (target < len(motion.times)) & (

@@ -104,20 +104,20 @@ def format_number(value: float, unit: str = "", digits: int = 3) -> str:
     """Format a number with its unit; a dash for NaN or infinity."""
     if not math.isfinite(value):
         return MISSING
-    factor, shown = display_scale(abs(value), unit)
+    factor, shown = divisor_and_unit(abs(value), unit)
     return f"{value / factor:.{digits}g} {shown}".rstrip()
 
 
 def format_with_error(value: float, error: float, unit: str = "") -> str:
     if not (math.isfinite(error) and error > 0.0):
         return format_number(value, unit, 4)
-    factor, shown = display_scale(max(abs(value), error), unit)
+    factor, shown = divisor_and_unit(max(abs(value), error), unit)
     value, error = value / factor, error / factor
     places = max(0, 1 - math.floor(math.log10(error)))
     return f"{value:.{places}f} ± {error:.{places}f} {shown}".rstrip()
 
 
-def display_scale(size: float, unit: str) -> tuple[float, str]:
+def divisor_and_unit(size: float, unit: str) -> tuple[float, str]:
     """Return divisor and unit for showing a number: short lengths in micrometres."""
     if unit == "m" and 0.0 < size < 1e-3:
         return 1e-6, "µm"

@@ -90,9 +90,11 @@ class Inputs:
             rows[:, self.controlled] = self.control.course.ends_means_and_moments(edges)[2]
         return rows[skipped:]
 
-    def run_master(self, master: Master, steps: range, h: float, first: int = 0) -> Record:
-        """Run both FMUs over some steps of one length, which all have from the first one on."""
-        earlier = min(2, steps.start - first)  # steps whose first moments are made up for in these
+    def run_master(self, master: Master, steps: range, h: float, equal_from: int = 0) -> Record:
+        """Run both FMUs over some steps of one length, which all have from `equal_from` on."""
+        earlier = min(
+            2, steps.start - equal_from
+        )  # steps whose first moments are made up for in these
         edges = np.arange(steps.start - earlier, steps.stop + 1, dtype=np.float64) * h
         rows = self.rows_over_steps(edges, master.input_width, earlier)
         if self.control is None:

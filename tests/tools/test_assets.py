@@ -27,7 +27,7 @@ def test_the_files_of_a_reference_are_those_that_are_kept(exported, monkeypatch,
     (tmp_path / reference.folder).mkdir()
     rows = [[0.0, *np.zeros(len(reference.outputs))]]
     kept = assets.MODELS / reference.folder / "reference"
-    references.write_reference(reference, rows)
+    references.write_reference_files(reference, rows)
     for path in kept.iterdir():
         written = tmp_path / reference.folder / "reference" / path.name
         assert path.name.endswith("_ref.csv") or written.read_bytes() == path.read_bytes()
