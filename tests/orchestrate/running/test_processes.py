@@ -14,13 +14,13 @@ ROOT = Path(__file__).resolve().parents[3]
 SCRIPT = """
 import sys
 from pathlib import Path
-from orchestrate.running.runner import answer
+from orchestrate.running.runner import compute_dataset
 from tests.orchestrate.running.sums import Model, Squares
 store = Path(sys.argv[1])
 fmu = store.with_suffix(".fmu")
 fmu.write_bytes(b"an FMU")
 running = {"store": store, "jobs": 2, "progress": False}
-answer(Squares("squares", size=120, pause=0.1), running, lambda model: Model(fmu, model))
+compute_dataset(Squares("squares", size=120, pause=0.1), running, lambda model: Model(fmu, model))
 """
 
 
