@@ -58,6 +58,19 @@ def test_a_clear_step_passes_no_root(seed):
     assert (value(h, at) >= -4e-15 * value(np.abs(h), at)).all()
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_step_of_the_walk_passes_no_root(seed):
+    """By the whole bound, from inside and from the boundary, whether or not it ends on the root."""
+    h, reach = starts(seed)
+    rows = zip(h.tolist(), reach.tolist(), strict=True)
+    ends = (
+        kernel.clear_step_or_root(*row[:5], -row[5], 1.0, far, 1e-15 * abs(row[0]))
+        for row, far in rows
+    )
+    at = np.array([step for step, _ in ends])[:, None] * PARTS
+    assert (value(h, at) >= -1.5e-14 * value(np.abs(h), at)).all()
+
+
 def test_a_clear_step_is_most_of_the_way_where_all_bends_one_way():
     """Then the parabola touches the quintic at the trial, and three trials close in on its root."""
     h, reach = starts(9)
