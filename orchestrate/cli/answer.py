@@ -112,10 +112,8 @@ class FunctionCommand(Command):
     ) -> dict[str, xr.Dataset]:
         """Compute results, print their summary, write files; return them."""
         *others, question = rest
-        states, branches = (
-            self.structures_by_state(structure),
-            self.read_overlay_branches(structure, question),
-        )
+        states = self.structures_by_state(structure)
+        branches = self.read_overlay_branches(structure, question)
         over = f"over_{question_digest(*branches)}" if branches else ""
         asked, fresh = (structure, *others, question), None if self.stores else True
         name = result_file_stem(self.named or self.calls, self.source_file_stems(), *asked)

@@ -133,9 +133,8 @@ value is carried to its neighbours, so along a range it is found as far as it ex
 alone may miss one whose basin is small."""
 
     def read_question(self) -> tuple[Structure, Keywords]:
-        return self.read_question_along_parameter(
-            needs_metres=True
-        )  # states are printed in m and m/s
+        # states are printed in m and m/s
+        return self.read_question_along_parameter(needs_metres=True)
 
     def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         name = printing.varied_parameter_name(data)

@@ -318,10 +318,7 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Funct
         return draw(first, label, dict(others))
 
     def check_sensor_use(self, records: Mapping[str, xr.Dataset]) -> None:
-        """Warn if simulated accelerations without impulses are compared with measured ones.
-
-        Raise where sensors are given, and no motion is simulated.
-        """
+        """Raise if sensors are given and no motion is simulated; warn of unlike accelerations."""
         simulated = [label for label, record in records.items() if "impulse" in record]
         if self.sensor is not None and not simulated:
             text = "of simulated motions; expected a result of shake, or a record without it"

@@ -94,9 +94,9 @@ def count_lines(data: xr.Dataset, array: xr.DataArray) -> Iterator[str]:
         data, array = data.sortby(along), array.sortby(along)
     known = Counter(array.values[array.notnull().values].tolist()).most_common()
     words = flag_words(array.attrs) if "flag_meanings" in array.attrs else {}
+    name = str(array.name).replace("_", " ")
     for one, count in known[:MOST_WORDS]:
-        word = one if isinstance(one, str) else words.get(int(one), f"{array.name} {one:g}")
-        name = str(array.name).replace("_", " ")
+        word = one if isinstance(one, str) else words.get(int(one), f"{name} {one:g}")
         word = {"yes": name, "no": f"no {name}"}.get(word, word)
         holds = array == one
         line = f"{word}: {format_share(count, holds.size)}"
@@ -109,7 +109,7 @@ def count_lines(data: xr.Dataset, array: xr.DataArray) -> Iterator[str]:
         yield from hint_lines([f"{array.name}: {word}"])
     if len(known) > MOST_WORDS:
         rest = sum(count for _, count in known[MOST_WORDS:])
-        yield f"another {array.name}: {format_share(rest, array.size)}"
+        yield f"another {name}: {format_share(rest, array.size)}"
 
 
 def hint_lines(words: Iterable[str]) -> Iterator[str]:

@@ -298,7 +298,7 @@ class DetectJob(SearchJob):
             "order2": variable("window", even.ratio, "1", "order 2 over order 1"),
             "order2_threshold": variable("window", even.threshold, "1", "size that counts as seen"),
         }
-        stated = is_hypothesis_stated(results, beam.verdict())
+        stated = mask_of_stated_hypotheses(results, beam.verdict())
         numbers = results.parameter_variables(stated)
         best = int(np.argmin(np.where(stated, results.misfit, np.inf)))
         unclear = dict.fromkeys(results.why_undetermined(best).values()) if stated[best] else ()
@@ -345,7 +345,7 @@ def sweep_direction(frequency: NDArray[np.float64]) -> str:
     return "up" if covered > 0.0 else "down"
 
 
-def is_hypothesis_stated(results: Results, verdict: str) -> NDArray[np.bool_]:
+def mask_of_stated_hypotheses(results: Results, verdict: str) -> NDArray[np.bool_]:
     """Return a mask of the hypotheses whose numbers are stated: those of a decided record."""
     count, settings = len(results.job.sound), results.job.data.settings
     sound, parted = results.misfit[:count], results.misfit[count:]

@@ -150,10 +150,10 @@ class Strikes:
 def measure_strikes(
     channels: Channels, shut_resonance: float = math.nan, settings: TimingSettings = TIMING
 ) -> Strikes:
-    """Measure what strikes at the sensor that hears most; resonance of the shut faces in Hz."""
+    """Measure what strikes at the sensor that hears most; ``shut_resonance``: Hz, NaN: unknown."""
     rows = [row for row, name in enumerate(channels.names) if name != BOX]
     orders = ([row, *(set(rows) - {row})] for row in rows)
-    every = (strikes_of_sensor(channels, rows, shut_resonance, settings) for rows in orders)
+    every = (strikes_of_sensor(channels, order, shut_resonance, settings) for order in orders)
     return max(every, key=lambda one: one.heard)
 
 
@@ -189,7 +189,7 @@ def strikes_of_sensor(
         stiffens=grown[excused],
         place=float(np.median(turned.real)),
         spread=float(np.subtract(*np.quantile(position, ends))),
-        stiffness=math.sqrt(max(np.median(stiffness[loud]), 0.0)) / shut * (1.0 - settings.known),
+        stiffness=math.sqrt(max(np.median(stiffness[loud]), 0.0)) / shut_resonance,
     )
 
 

@@ -156,9 +156,10 @@ def smooth_rate(rate: Floats) -> Floats:
 
 def curve_and_noise_by_spectra(channels: Channels) -> ResponseSigns:
     """Compute the response at the lines that the box excites, and the noise; without orders."""
-    frequency, box, rows, cross = compute_spectra(channels)
+    segments, faces, rate = welch_segments(channels), channels.values[1:], channels.sample_rate
+    frequency, box, rows, cross = segments.compute_spectra(channels.box, faces, rate)
     excited = excited_lines(frequency, box)
-    low, high = 0.36 * channels.sample_rate, 0.44 * channels.sample_rate
+    low, high = 0.36 * rate, 0.44 * rate
     density = median_of_finite_columns(rows[:, (frequency >= low) & (frequency <= high)])
     response = cross[:, excited] / box[excited]
     level, unknown = float(channels.box.std()), np.full(len(rows), np.nan)
@@ -173,12 +174,6 @@ def welch_segments(channels: Channels) -> WelchSegments:
     return divide_into_segments(channels, None, "hann", OVERLAP, fewest=2)
 
 
-def compute_spectra(channels: Channels) -> tuple[Floats, Floats, Floats, Floats]:
-    """Return frequencies, power densities of box and rows, and their cross densities (Welch)."""
-    drive, rows, rate = channels.box, channels.values[1:], channels.sample_rate
-    return welch_segments(channels).compute_spectra(drive, rows, rate)
-
-
 def excited_lines(frequency: Floats, box: Floats) -> NDArray[np.bool_]:
     """Return a mask of the lines of a spectrum that the base excites."""
     return np.asarray((box >= EXCITED * box.max()) & (frequency > 0.0))
@@ -191,7 +186,8 @@ def coherence_loss_and_floor(channels: Channels, noise: Floats) -> tuple[Floats,
     except InputError:
         unknown = np.full(len(noise), np.nan)
         return unknown, unknown
-    frequency, box, rows, cross = compute_spectra(channels)
+    faces, rate = channels.values[1:], channels.sample_rate
+    frequency, box, rows, cross = segments.compute_spectra(channels.box, faces, rate)
     excited = excited_lines(frequency, box)
     with np.errstate(invalid="ignore", divide="ignore"):
         power = rows[:, excited]

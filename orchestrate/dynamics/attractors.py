@@ -263,10 +263,8 @@ def draw_starts_around_rest_and_response(
     draws = np.random.default_rng([*seed, 1]).uniform(-1.0, 1.0, (count, 4))
     frequency = point.excitation.frequency
     # of the largest displacement, and of the largest gap, of the response from rest
-    around, gap = (
-        0.7 * from_rest.max_displacement,
-        3.0 * (from_rest.max_gap or point.displacement_unit),
-    )
+    around = 0.7 * from_rest.max_displacement
+    gap = 3.0 * (from_rest.max_gap or point.displacement_unit)
     x1 = from_rest.state[0] + around * draws[:, 0]
     v1 = from_rest.state[2] + frequency * around * draws[:, 2]
     gaps, gap_rates = gap * np.abs(draws[:, 1]), frequency * gap * draws[:, 3]

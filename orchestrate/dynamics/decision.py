@@ -131,10 +131,8 @@ class MotionDecider:
 
     def motion_without_orbit(self, response: Response, near_unstable: bool) -> SettledMotion:
         """Return a new motion for a response without stable orbit; a periodic one is known now."""
-        n = response.multiplicity
-        if (
-            not n or response.find_repetition(self.settings.converged).multiplicity != n
-        ):  # nearly is not
+        n = response.multiplicity  # by `apart` too: a response that nearly repeats is irregular
+        if not n or response.find_repetition(self.settings.converged).multiplicity != n:
             states, impacts = response.samples, response.impacts_per_period
             return SettledMotion(self.point, IRREGULAR, states, 0, impacts, response.x_rel_max)
         states = response.samples[-n:].copy()

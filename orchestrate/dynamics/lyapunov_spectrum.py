@@ -43,8 +43,8 @@ def block_growth(matrices: Floats, times: Floats, end: float, blocks: int) -> Bl
     count, rows = matrices.shape[:2]
     size = max(1, count // blocks)
     growth = np.empty(-(-count // size))
-    addresses = matrices.ctypes.data, growth.ctypes.data
-    if not exponent_library().find_growth(addresses[0], count, rows, size, addresses[1]):
+    data, out = matrices.ctypes.data, growth.ctypes.data
+    if not exponent_library().find_growth(data, count, rows, size, out):
         return None
     return BlockGrowth(growth, np.diff(np.append(times[::size], end)))
 

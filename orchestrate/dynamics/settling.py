@@ -100,7 +100,7 @@ class SettledResponse(NamedTuple):
 
 
 class ReachedMotion(NamedTuple):
-    """A known motion that a response has come to, where, and the periods that took at most."""
+    """A motion that a response has come to, a state on it, and the periods that it was run."""
 
     motion: SettledMotion
     state: Floats  # at phase 0, on it

@@ -89,8 +89,8 @@ def contact_durations(form: ClosedForm, phase: Floats, states: Floats, spans: Fl
     columns = phase / eta, from_unloaded, 0.0 * phase, 1.0 + 0.0 * phase
     for i, row in enumerate(np.column_stack(columns)):
         arguments = numbers.ctypes.data, row.ctypes.data, 1, row[0] + 1.5 * spans[i]
-        matrix = exponent_library().find_deviations(*arguments, memory.ctypes.data)
-        durations[i] = memory[matrix + 16]
+        first = exponent_library().find_deviations(*arguments, memory.ctypes.data)
+        durations[i] = memory[first + 16]
     return np.where(durations <= spans, durations, np.inf)
 
 

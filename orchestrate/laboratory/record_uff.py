@@ -54,7 +54,9 @@ def columns_over_time(
     """Return the datasets over time as columns; log those that are skipped."""
     used = [(i, one) for i, one in functions if is_real_and_over_time(one)]
     for i in sorted({*range(len(kinds))} - {i for i, _ in used}):
-        log.info("%s: dataset %d, number %d, is no function of time; skipped", path, kinds[i], i)
+        log.info(
+            "%s: dataset %d, number %d, is no real function of time; skipped", path, kinds[i], i
+        )
     if not used:
         types = {i: int(one.get("func_type", 0)) for i, one in functions}
         named = [

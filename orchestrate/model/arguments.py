@@ -42,7 +42,7 @@ def checked_word(name: str, value: Any, known: Iterable[str]) -> str:
 
 def checked_text(name: str, value: Any) -> str | None:
     if value is not None and not (isinstance(value, str) and value.isprintable()):
-        raise InputError(f"{name} = {value!r}: expected a text, or None")
+        raise InputError(f"{name} = {value!r}: expected printable text, or None")
     return value
 
 

@@ -286,7 +286,7 @@ def require_bonded_twin(structure: Structure) -> None:
 
 
 def require_delaminated(structure: object, function: str = "") -> None:
-    """Raise unless delaminated and, for a named function, without what only some know: a wall."""
+    """Raise unless delaminated; for a named function, also for a wall or stroke it has not."""
     if checked_structure(structure).bonded:
         raise InputError("bonded = True: expected a delaminated structure (bonded = false)")
     if function:

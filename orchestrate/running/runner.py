@@ -146,9 +146,8 @@ class Runner:
 
     def make_bar(self) -> Any:
         unit = self.jobs[0].item if len(self.jobs) == 1 else "item"
-        shown = self.options.progress
-        ends = {"total": self.progress_total(), "initial": self.items_done()}
-        return progress_bar(self.bar_label(), shown, **ends, unit=unit)
+        shown, total, done = self.options.progress, self.progress_total(), self.items_done()
+        return progress_bar(self.bar_label(), shown, total=total, initial=done, unit=unit)
 
     def bar_label(self) -> str:
         return self.jobs[0].name if len(self.jobs) == 1 else f"{len(self.jobs)} results"

@@ -197,8 +197,8 @@ def explain_proposal(drive: Description, ours: str, theirs: str) -> str:
     if ours == theirs:
         return "has the same name"
     alike = name_similarity(ours.partition("_")[2], theirs) == 1.0
-    unit = [f"{variable.causality} in {variable.unit}"] * (variable.unit in drive.units)
-    reasons = unit + ["a name like it"] * alike
+    has_unit = variable.unit in drive.units
+    reasons = [f"{variable.causality} in {variable.unit}"] * has_unit + ["a name like it"] * alike
     return " and ".join(reasons)
 
 

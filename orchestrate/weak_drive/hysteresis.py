@@ -249,7 +249,7 @@ class HysteresisLoop:
     def update_step_and_find_jump(
         self, points: list[HeldPoint], i: int, jumps: list[Jump]
     ) -> Jump | None:
-        """Replace a step's end by what lasts there, drop unsure ones after; return the jump."""
+        """Replace a step's end by what lasts, drop unsure ones after; return the jump, or None."""
         low, high = points[i : i + 2]
         landed = self.hold_from_low_end(low, high.voltage, high, requires_lifetime=True)
         points[i + 1] = high = landed if math.isfinite(landed.speed) else high
@@ -303,8 +303,8 @@ class HysteresisLoop:
 
     def required_lifetime(self, low: HeldPoint, high: HeldPoint) -> float:
         """Return for how long, s, a motion before a step has to last if it may be a transient."""
-        least = self.settings.lives * max(low.time, high.time)
-        return min(least, self.settings.patience * self.max_hold)
+        lifetime = self.settings.lives * max(low.time, high.time)
+        return min(lifetime, self.settings.patience * self.max_hold)
 
     def hold_until_lasting(self, point: HeldPoint, high: HeldPoint, lifetime: float) -> HeldPoint:
         """Hold a motion until it is known to last; return it, or what it has become."""

@@ -78,9 +78,9 @@ class JumpVoltagesJob(Job):
                 job = make_couple_job(structure, self.drive, schedule, self.scheme, hold=0.0)
                 runs.append((job, job.run_all_chunks(fmus)))
             jumps = [each[0] if each else None for each in slowest.jumps_by_direction(table)]
-            each = list(enumerate(jumps))
+            numbered = list(enumerate(jumps))
             shown.append(
-                [[ramp_jump_voltage_and_speed(*run, *one) for one in each] for run in runs]
+                [[ramp_jump_voltage_and_speed(*run, *one) for one in numbered] for run in runs]
             )
         return {"jumps": np.array(rows), "decided": np.array(decided), "shown": np.array(shown)}
 

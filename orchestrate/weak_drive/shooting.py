@@ -116,12 +116,12 @@ class Shooter:
         self.jacobian_matrix, self._last = np.empty((0, 0)), None
 
     def state_change_after(self, unknowns: Floats, revolutions: int) -> Floats:
-        turns, matrix, last = self.revolutions, self.jacobian_matrix, self._last
+        before, matrix, last = self.revolutions, self.jacobian_matrix, self._last
         self.set_revolutions(revolutions)
         try:
             return self.shoot(unknowns).end[: self.size] - unknowns[: self.size]
         finally:
-            self.set_revolutions(turns)
+            self.set_revolutions(before)
             self.jacobian_matrix, self._last = matrix, last
 
     # -- both FMUs over a period --

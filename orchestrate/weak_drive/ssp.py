@@ -316,10 +316,8 @@ def drive_component(
     connect = checked_mapping("connect", connect) if connect is not None else None
     units = checked_mapping("units", units)
     if isinstance(drive, Shaker):
-        path, values = (
-            fmu or default_fmu_path(ELECTRODYNAMIC_SHAKER),
-            {**drive.parameters(), **values},
-        )
+        path = fmu or default_fmu_path(ELECTRODYNAMIC_SHAKER)
+        values = {**drive.parameters(), **values}
     else:
         path = Path(drive)
     description, exchanged = describe(path), ("box_force", "box_acceleration")

@@ -9,7 +9,7 @@ import pytest
 
 from orchestrate.diagnosis import search_job
 from orchestrate.diagnosis.decision_rule import DELAMINATED, NOT_SEEN, UNDECIDED, Beam
-from orchestrate.diagnosis.detect import is_hypothesis_stated
+from orchestrate.diagnosis.detect import mask_of_stated_hypotheses
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fit import Results
 from orchestrate.diagnosis.hypotheses import Delaminated, DryFriction
@@ -178,7 +178,7 @@ def test_little_moves_below_a_tenth_of_the_largest_order_1():
 def test_each_threshold_of_stated_numbers(sound, parted, stated):
     job = SimpleNamespace(sound=[1], data=SimpleNamespace(settings=SETTINGS))
     fits = SimpleNamespace(job=job, misfit=np.array([sound, parted]))
-    found = [is_hypothesis_stated(fits, word).tolist() for word in (NOT_SEEN, DELAMINATED)]
+    found = [mask_of_stated_hypotheses(fits, word).tolist() for word in (NOT_SEEN, DELAMINATED)]
     assert found == [[stated == "sound", False], [False, stated == "parted"]]
     described = Results.is_described.fget(fits)
     assert described.tolist() == [sound <= 3.0, parted <= 3.0]
