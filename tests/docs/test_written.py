@@ -33,6 +33,20 @@ def write_files(folder):
             (folder / name).write_text(text, encoding="utf-8")
 
 
+def write_knocks(folder):
+    """The records of a hammer test that the reader would have measured."""
+    beam = "shake --structure beam.toml --set clearance=0.1mm --format csv"
+    knock = f"{beam} --hammer 5:0.004 --sensor 800 --half"
+    for half in "12":
+        cli.main([*knock.split(), half, "--store", str(folder / f"half{half}.nc")])
+        (folder / f"half{half}_sensors.csv").rename(folder / f"half{half}.csv")
+
+
+def takes_stored(words, earlier):
+    """Whether a command takes what the sensors read in an earlier one."""
+    return "--store" in earlier and f"{earlier[-1].removesuffix('.nc')}_sensors.nc" in words
+
+
 @functools.cache
 def own_drive():
     """The FMU of somebody else that the page on drives speaks of."""
@@ -77,8 +91,11 @@ def test_commands_run(words, folder, small, capsys):
     write_files(folder)
     if "shaker.fmu" in words:
         shutil.copy(own_drive(), folder / "shaker.fmu")
+    if "half1.csv" in words:
+        write_knocks(folder)
     page, takes = [*map(tuple, commands(SHORT[words]))], {"--start", "--overlay"} & set(words)
     first = [one for one in page[: page.index(words)] if takes and one[0] in ("branch", "border")]
+    first += [one for one in page[: page.index(words)] if takes_stored(words, one)]
     for one in [*first, words]:  # those before make the files that it takes
         names = (folder.glob(word) if "*" in word else [word] for word in one)  # as a shell does
         code = cli.main([str(name) for every in names for name in every])
