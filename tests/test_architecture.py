@@ -39,7 +39,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "units": {"constants", "errors"},
     "model": GROUND - {"model"},
     "fmu": GROUND,
-    "running": GROUND,
+    "running": GROUND | {"fmu"},
     "response": BELOW_ANSWERS,
     "dynamics": BELOW_ANSWERS | {"response"},
     "laboratory": BELOW_ANSWERS | {"response", "weak_drive"},

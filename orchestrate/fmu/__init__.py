@@ -21,9 +21,8 @@ module               idea
 """
 
 from .c_library import build_libraries
-from .channel import Channel
-from .description import Description, describe
-from .events import NO_INPUT, PLAYED, EventInstance, PlayedMotion, Player
+from .description import describe
+from .events import NO_INPUT, PLAYED, EventInstance, Player
 from .exported import (
     FORMS,
     MODELS,
@@ -35,7 +34,7 @@ from .exported import (
     source_forms_of,
 )
 from .impacts import STATE, Impacts
-from .instance import Instance, function_addresses
+from .instance import Instance
 from .models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER, OSCILLATOR
 from .oscillator import (
     START_VALUES,
@@ -61,12 +60,9 @@ __all__ = [
     "START_VALUES",
     "MOTOR_SHAKER",
     "STATE",
-    "Channel",
-    "Description",
     "EventInstance",
     "Impacts",
     "Instance",
-    "PlayedMotion",
     "Player",
     "start_motion",
     "build",
@@ -76,7 +72,6 @@ __all__ = [
     "find_or_export",
     "make_fmu_finder",
     "checked_four_numbers",
-    "function_addresses",
     "gaps_of_states",
     "respond_library",
     "sample_evenly",

@@ -38,15 +38,18 @@ def find_or_compile_library(source: Path, folder: str | PathLike[str] | None = N
     platform = platform_of_this_machine()
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     token = sources.library_guid(source)
+
+    def is_usable(path: Path) -> bool:
+        return is_trusted(path) and sources.is_current_and_undamaged(path, token)
+
     try:
         name = sources.library_name(source, platform)
         paths = [candidate / FORM / name for candidate in folders]
-        for path in paths:
-            if is_trusted(path) and sources.is_current_and_undamaged(path, token):
-                return path
+        if usable := next(filter(is_usable, paths), None):
+            return usable
         path = paths[0]
         with creation_lock(path):
-            if not (is_trusted(path) and sources.is_current_and_undamaged(path, token)):
+            if not is_usable(path):
                 compile_library(source, platform, folders[0])
         if is_trusted(path):
             return path

@@ -83,20 +83,14 @@ def describe_runnable(path: str | PathLike[str], model: str | None = None) -> De
     return description
 
 
-def si_exponents(base: Any) -> dict[str, int]:
-    """Return the nonzero exponents of the SI base units (kg, m, s, ...) of FMPy's base unit."""
-    powers = {name: int(getattr(base, name)) for name in SI_UNITS} if base else {}
-    return {name: exponent for name, exponent in powers.items() if exponent}
-
-
 def units_of(xml: Any) -> dict[str, Unit]:
     """Return the units of FMPy's description: those without a base unit, by their names."""
     named = ((name, parse_unit(name)) for name in {v.unit for v in xml.modelVariables} if name)
-    defined = ((u.name, u.baseUnit) for u in xml.unitDefinitions if u.baseUnit)
-    return {
-        **{name: unit for name, unit in named if unit is not None},
-        **{name: Unit(si_exponents(base), float(base.factor)) for name, base in defined},
-    }
+    units = {name: unit for name, unit in named if unit is not None}
+    for name, base in ((u.name, u.baseUnit) for u in xml.unitDefinitions if u.baseUnit):
+        powers = {unit: power for unit in SI_UNITS if (power := int(getattr(base, unit)))}
+        units[name] = Unit(powers, float(base.factor))
+    return units
 
 
 _known: dict[str, Description] = {}  # by digest: validation takes long
@@ -149,10 +143,10 @@ def read_description(path: Path) -> Description:
         digest = hashlib.sha256(data).hexdigest()
         names = checked_archive_names(data)
         xml = fmpy.read_model_description(io.BytesIO(data))
-        co_simulation = xml.coSimulation
-        library = f"{co_simulation and co_simulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
+        co_simulation = xml.coSimulation  # None of an FMU for model exchange alone
+        identifier = getattr(co_simulation, "modelIdentifier", "")
+        library = f"{identifier}{fmpy.sharedLibraryExtension}"
         here = {f"binaries/{one}/{library}" for one in (fmpy.platform, fmpy.platform_tuple)}
-        identifier = co_simulation.modelIdentifier if co_simulation else ""
         if co_simulation and not re.fullmatch(r"[A-Za-z_]\w*", identifier, re.ASCII):
             expected = "expected letters, digits and _"
             raise ValueError(f"modelIdentifier {identifier[:100]!r}, {expected}")
@@ -162,15 +156,15 @@ def read_description(path: Path) -> Description:
             guid=str(xml.guid),
             fmi_version=xml.fmiVersion,
             variables={v.name: v for v in xml.modelVariables},
-            needs_tool=bool(co_simulation and co_simulation.needsExecutionTool),
+            needs_tool=bool(getattr(co_simulation, "needsExecutionTool", False)),
             identifier=identifier,
             units=units_of(xml),
-            has_fixed_step=bool(
-                co_simulation and not co_simulation.canHandleVariableCommunicationStepSize
+            has_fixed_step=not getattr(
+                co_simulation, "canHandleVariableCommunicationStepSize", True
             ),
             internal_step=float(getattr(co_simulation, "fixedInternalStepSize", None) or 0.0),
-            has_states=bool(co_simulation and co_simulation.canGetAndSetFMUstate),
-            saves_states=bool(co_simulation and co_simulation.canSerializeFMUstate),
+            has_states=bool(getattr(co_simulation, "canGetAndSetFMUstate", False)),
+            saves_states=bool(getattr(co_simulation, "canSerializeFMUstate", False)),
             runs_here=not here.isdisjoint(names),
             digest=digest,
         )

@@ -45,24 +45,21 @@ def build(
     names: Iterable[str] = MODELS,
     platforms: Iterable[str] = (),
 ) -> list[Path]:
-    """Export FMUs of models, in forms (FMI versions), for platforms; return the files' paths."""
+    """Export FMUs of models, in forms (FMI versions), for platforms; return the files' paths.
+
+    Those that cannot be made are warned of; if none can, ``InputError``.
+    """
     forms = tuple(forms)
     pairs = [(form, name) for name in names for form in forms]
+    target = default_folder() if folder is None else Path(folder)
+    written, reasons = [], []
     try:
         chosen = sources.select_platforms(platforms)
     except CannotExport as reason:
         raise InputError(str(reason)) from None
-    return export_all(pairs, default_folder() if folder is None else Path(folder), chosen)
-
-
-def export_all(
-    pairs: Iterable[tuple[str, str]], folder: Path, platforms: tuple[str, ...] = ()
-) -> list[Path]:
-    """Export (form, model) pairs; warn of those that cannot be, raise if none can."""
-    written, reasons = [], []
     for form, name in pairs:
         try:
-            written.append(export(name, form, folder, platforms))
+            written.append(export(name, form, target, chosen))
         except CannotExport as reason:
             reasons.append(f"{form}/{name}.fmu cannot be made: {reason}")
     if reasons and not written:
@@ -78,7 +75,7 @@ def export(
     """Export an FMU to ``folder/form/name.fmu``, which only the user can write if it is default."""
     require_known(name, form)
     make_writable_folder(folder)
-    log_first_export(folder, level)
+    log_once(f"exporting FMUs to {folder}, this once: compiling takes some seconds a model", level)
     log.info("exporting %s", folder / form / f"{name}.fmu")
     try:
         path = export_or_copy(name, form, folder, platforms)
@@ -103,22 +100,6 @@ def export_or_copy(name: str, form: str, folder: Path, platforms: tuple[str, ...
     path.parent.mkdir(parents=True, exist_ok=True)
     shipped = (SHIPPED / form / path.name).read_bytes()
     return write_atomically(path, lambda target: target.write_bytes(shipped))
-
-
-def export_unless_current(name: str, form: str, folder: Path, level: int) -> Description:
-    """Export an FMU unless another process has just done so; return its description."""
-    path = folder / form / f"{name}.fmu"
-    with creation_lock(path):
-        if not is_current_and_trusted(form, name, folder):
-            export(name, form, folder, level=level)
-    return describe(path, name)
-
-
-@functools.cache
-def log_first_export(folder: Path, level: int) -> None:
-    """Log, once a process, that FMUs are exported to a folder."""
-    text = "exporting FMUs to %s, this once: compiling takes some seconds a model"
-    log.log(level, text, folder)
 
 
 @functools.cache
@@ -146,7 +127,7 @@ def is_current_and_trusted(form: str, name: str, folder: str | PathLike[str]) ->
         return current  # another folder was named, and so trusted
     if is_written_by_trusted_only(path) and is_written_by_trusted_only(path.parent):
         return True
-    warn_once(f"{path}: {NOT_PRIVATE}")
+    log_once(f"{path}: {NOT_PRIVATE}")
     return False
 
 
@@ -176,14 +157,18 @@ def find_or_export(
     reasons: list[CannotExport] = []
     for candidate in dict.fromkeys((form, WITHOUT_COMPILER)):
         if candidate != form:
-            warn_once(
+            log_once(
                 f"no {form} FMU here, {candidate} serves instead, without events: {reasons[0]}"
             )
-        for base in folders:
+        paths = [base / candidate / f"{model}.fmu" for base in folders]
+        for base, path in zip(folders, paths, strict=True):
             if is_current_and_trusted(candidate, model, base):
-                return describe(base / candidate / f"{model}.fmu", model)
+                return describe(path, model)
         try:
-            return export_unless_current(model, candidate, folders[0], level)
+            with creation_lock(paths[0]):  # another process may just have exported it
+                if not is_current_and_trusted(candidate, model, folders[0]):
+                    export(model, candidate, folders[0], level=level)
+            return describe(paths[0], model)
         except CannotExport as reason:
             reasons.append(reason)
     text = f"FMU {model}: none matches the current sources, and none can be built here"
@@ -191,8 +176,8 @@ def find_or_export(
 
 
 @functools.cache
-def warn_once(line: str) -> None:
-    log.warning("%s", line)
+def log_once(line: str, level: int = logging.WARNING) -> None:
+    log.log(level, "%s", line)
 
 
 def make_fmu_finder(running: Mapping[str, Any]) -> Callable[[str], Description]:

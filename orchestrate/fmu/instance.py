@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from ctypes import byref, c_bool, c_double, c_int, c_size_t, c_uint, c_void_p, cast
 from functools import partial
 from os import PathLike
-from types import TracebackType
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -74,7 +73,7 @@ class Instance:
         self._open = False
         try:
             self._fmu = new_fmu_object(self.description, name)
-            (self._instantiate_fmi3 if self.is_fmi3 else self._instantiate_fmi2)()
+            self._instantiate()
         except VibroimpactError:
             raise
         except Exception as error:
@@ -90,7 +89,10 @@ class Instance:
     def is_fmi3(self) -> bool:
         return self.description.is_fmi3
 
-    def _instantiate_fmi2(self) -> None:
+    def _instantiate(self) -> None:
+        if self.is_fmi3:
+            self.call("instantiate", loggingOn=True, logMessage=self._log, **self.EVENTS)
+            return
         import fmpy
         from fmpy import fmi2
 
@@ -101,9 +103,6 @@ class Instance:
         # messages come as a format with arguments
         fmpy.logging.addLoggerProxy(byref(self._callbacks))
         self.call("instantiate", callbacks=self._callbacks, loggingOn=True)
-
-    def _instantiate_fmi3(self) -> None:
-        self.call("instantiate", loggingOn=True, logMessage=self._log, **self.EVENTS)
 
     def _prepare_fmi2(self) -> tuple[Prepared, list[Prepared], Prepared]:
         no, zero = c_int(0), c_double()  # no tolerance, no end
@@ -128,12 +127,7 @@ class Instance:
     def __enter__(self) -> Any:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:
@@ -168,11 +162,8 @@ class Instance:
     def check_status(self, function: str, status: int) -> None:
         """Raise ``FmuError`` unless a call of the FMU answered OK, or a warning, which is kept."""
         if status == WARNING:
-            text = (
-                self.logged_messages(WARNING)
-                or self.logged_messages()
-                or f"{function}, without a message"
-            )
+            logged = self.logged_messages(WARNING) or self.logged_messages()
+            text = logged or f"{function}, without a message"
             self.warnings[" ".join(f"the FMU {self.description.name} warns: {text}".split())] = None
         elif status:
             raise self.status_error(function, status)
@@ -305,10 +296,9 @@ class Instance:
     def _prepare_reader(self, names: tuple[str, ...]) -> tuple[Transfer, NDArray[np.float64]]:
         if names not in self._readers:
             elements = [element for name in names for element in self.elements(name)]
-            for variable in (
-                variable for variable, _ in elements if variable.type not in REAL_TYPES
-            ):
-                raise FmuError(f"{variable.name}: is {variable.type}; expected Real variables")
+            for variable, _ in elements:
+                if variable.type not in REAL_TYPES:
+                    raise FmuError(f"{variable.name}: is {variable.type}; expected Real variables")
             transfer = self._prepare_transfer("Get", elements[0][0].type, elements, [])
             self._readers[names] = transfer, np.ctypeslib.as_array(transfer.values)
         return self._readers[names]
@@ -324,25 +314,15 @@ class Instance:
         return [(variables[f"{name}[{i + 1}]"], 1) for i in range(count)]
 
     def save_state(self) -> bytes:
-        get, serialize, _, _, free = self.state_method_names()
-        state = self.call(get)
+        state = self.call("getFMUState")
         try:
-            return bytes(self.call(serialize, state))
+            return bytes(self.call("serializeFMUState", state))
         finally:
-            self.call(free, state)
+            self.call("freeFMUState", state)
 
     def restore_state(self, data: bytes) -> None:
-        _, _, deserialize, put, free = self.state_method_names()
-        state = self.call(deserialize, data)
+        state = self.call("deserializeFMUState", data)
         try:
-            self.call(put, state)
+            self.call("setFMUState", state)
         finally:
-            self.call(free, state)
-
-    def state_method_names(self) -> tuple[str, str, str, str, str]:
-        """Return FMPy's method names to get, serialize, deserialize, set and free a state."""
-        if self.is_fmi3:
-            save = "getFMUState", "serializeFMUState"
-            return *save, "deserializeFMUState", "setFMUState", "freeFMUState"
-        save = "getFMUstate", "serializeFMUstate"
-        return *save, "deSerializeFMUstate", "setFMUstate", "freeFMUstate"
+            self.call("freeFMUState", state)

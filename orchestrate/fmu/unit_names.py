@@ -13,7 +13,7 @@ class Unit(NamedTuple):
     factor: float = 1.0
 
 
-SYMBOLS = {
+WITHOUT_PREFIX = {
     "m": Unit({"m": 1}),
     "s": Unit({"s": 1}),
     "min": Unit({"s": 1}, 60.0),
@@ -25,6 +25,11 @@ SYMBOLS = {
     "V": Unit({"kg": 1, "m": 2, "s": -3, "A": -1}),
 }
 PREFIXES = {"": 1.0, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6, "\u00b5": 1e-6, "\u03bc": 1e-6}
+SYMBOLS = {
+    prefix + symbol: Unit(unit.exponents, factor * unit.factor)
+    for symbol, unit in WITHOUT_PREFIX.items()
+    for prefix, factor in PREFIXES.items()
+}
 PART = re.compile(r"(?P<symbol>[^\W\d_]+)\^?\(?(?P<power>-?\d*)\)?")
 SEPARATED = re.compile(r"([./*\u00b7 ])")
 AMBIGUOUS = ("g",)  # gram, or an acceleration
@@ -42,7 +47,7 @@ def parse_unit(name: str) -> Unit | None:
             sign = -1 if part == "/" else sign
             continue
         match = PART.fullmatch(part)
-        symbol = parse_prefixed_symbol(match["symbol"]) if match else None
+        symbol = SYMBOLS.get(match["symbol"]) if match else None
         if match is None or symbol is None:
             return None
         power = sign * int(match["power"] or 1)
@@ -50,12 +55,3 @@ def parse_unit(name: str) -> Unit | None:
         for base, exponent in symbol.exponents.items():
             exponents[base] = exponents.get(base, 0) + power * exponent
     return Unit({base: power for base, power in exponents.items() if power}, factor)
-
-
-def parse_prefixed_symbol(text: str) -> Unit | None:
-    """Return the unit of a symbol, with a prefix or without; None if it is not known."""
-    for prefix, factor in PREFIXES.items():
-        known = SYMBOLS.get(text.removeprefix(prefix)) if text.startswith(prefix) else None
-        if known is not None:
-            return Unit(known.exponents, factor * known.factor)
-    return None

@@ -12,14 +12,17 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .identity import Fmu, Identity
+from .identity import Identity
 from .job import Chunk, Job, Table, last_entries
 from .provenance import with_provenance
 from .store import Store
+
+if TYPE_CHECKING:
+    from ..fmu.description import Description
 
 log = logging.getLogger(__name__)
 MIN_GAP = 3  # chunks in a row not begun: from here on, guessing the middle one pays
@@ -51,7 +54,9 @@ class Guess:
 class ChunkSchedule:
     """Scheduling state of one job: chunks done, running, or computed ahead from guessed states."""
 
-    def __init__(self, job: Job, store: Store, identity: Identity, fmus: Mapping[str, Fmu]) -> None:
+    def __init__(
+        self, job: Job, store: Store, identity: Identity, fmus: Mapping[str, Description]
+    ) -> None:
         self.job, self.store, self.identity, self.fmus = job, store, identity, fmus
         self.chunks = job.chunks()
         self.result = store.result()
@@ -124,7 +129,7 @@ class ChunkSchedule:
     def tasks_with_known_start(self) -> Iterator[Task]:
         for chunk in self.left.values():
             if self.can_start_now(chunk):
-                yield Task(chunk, self.items_of(chunk), self.previous_table(chunk), (), False)
+                yield self.task(chunk, self.previous_table(chunk))
 
     def previous_table(self, chunk: Chunk) -> Table | None:
         """Return the rows a chunk continues from: none, the last, or all for the last item."""
@@ -150,27 +155,20 @@ class ChunkSchedule:
     def tasks_continuing_guesses(self) -> Iterator[Task]:
         """Yield tasks that continue guessed chunks, also instead of guesses with another start."""
         for index in sorted(self.guesses):
-            following = index + 1
+            following, previous = index + 1, self.guesses[index].end
             if following < len(self.chunks) and self.chunks[following].after == index:
-                previous = self.guesses[index].end
-                if self.is_untouched(following) or self.guess_has_other_start(following, previous):
-                    chunk = self.chunks[following]
-                    yield Task(chunk, self.items_of(chunk), previous, (), True)
-
-    def guess_has_other_start(self, index: int, previous: Table) -> bool:
-        guess = None if index in self.under_way else self.guesses.get(index)
-        return guess is not None and guess.start != self.job.boundary_state(previous)
+                guess = None if following in self.under_way else self.guesses.get(following)
+                has_other_start = guess and guess.start != self.job.boundary_state(previous)
+                if has_other_start or self.is_untouched(following):
+                    yield self.task(self.chunks[following], previous, guess=True)
 
     def tasks_in_longest_gap(self) -> Iterator[Task]:
         """Yield one task amid the longest run of untouched chunks, started by warm-up items."""
         first, last = max(self.untouched_runs(), key=lambda gap: gap[1] - gap[0], default=(0, 0))
         if self.job.warmup_items and last - first >= MIN_GAP:
             chunk = self.chunks[min((first + last) // 2, first + REACH)]
-            begin = self.chunks[first].start
-            warmup_items = self.items_between(
-                max(chunk.start - self.job.warmup_items, begin), chunk.start
-            )
-            yield Task(chunk, self.items_of(chunk), None, warmup_items, True)
+            room = chunk.start - self.chunks[first].start
+            yield self.task(chunk, None, True, min(self.job.warmup_items, room))
 
     def untouched_runs(self) -> Iterator[tuple[int, int]]:
         first = last = 0
@@ -181,12 +179,13 @@ class ChunkSchedule:
             last = index + 1
         yield first, last
 
-    def items_of(self, chunk: Chunk) -> Sequence[Any]:
-        return self.items_between(chunk.start, chunk.stop)
-
-    def items_between(self, first: int, last: int) -> Sequence[Any]:
+    def task(
+        self, chunk: Chunk, previous: Table | None, guess: bool = False, warmup: int = 0
+    ) -> Task:
+        """Return the task of a chunk; ``warmup``: how many items before it are computed first."""
         assert self.items is not None, "items not made"
-        return self.items[first:last]
+        before = self.items[chunk.start - warmup : chunk.start] if warmup else ()
+        return Task(chunk, self.items[chunk.start : chunk.stop], previous, before, guess)
 
     def estimate_startable_tasks(self) -> int:
         """Return how many workers could compute chunks of this job now, an estimate."""
@@ -200,9 +199,8 @@ class ChunkSchedule:
 
     def add_result(self, task: Task, start: bytes, table: Table) -> None:
         index = task.chunk.index
-        assert self.job.has_row_per_item(table, self.item_count(index)), (
-            f"{self.job.name}: item_columns"
-        )
+        fits = self.job.has_row_per_item(table, self.item_count(index))
+        assert fits, f"{self.job.name}: item_columns"
         self.under_way.discard(index)
         if task.guess:
             self.wasted += self.item_count(index) if index in self.guesses else 0
@@ -239,7 +237,7 @@ class ChunkSchedule:
         if self.wasted:
             log.debug("%s: %d items were guessed in vain", self.job.name, self.wasted)
         about = self.job, self.identity, self.fmus, self.store.begun
-        # only the store holds the dataset, and lets go of it
+        # only the store holds the dataset, and lets go of it; nobody the table
         self.result = self.store.finish(
             with_provenance(self.job.dataset(self.joined_table()), *about)
         )

@@ -13,9 +13,7 @@ from ..errors import InputError, VibroimpactError, WorkerError
 from .executors import RESUMES, Workers, format_broken_pool
 
 CONNECT_TIMEOUT = "5s"
-CONNECTION_ERRORS = (OSError, CancelledError, asyncio.CancelledError)
 RETRIES = 3  # a chunk whose worker is lost is computed by others
-NO_DASK = "cluster: needs Dask; pip install distributed brings it"
 
 
 @contextmanager
@@ -47,7 +45,8 @@ def dask_workers(client: Any) -> Iterator[Workers]:
     except BaseException as error:
         with suppress(Exception):
             executor.shutdown(wait=False)
-        lost = isinstance(error, CONNECTION_ERRORS) or client.status != "running"
+        is_refused = isinstance(error, (OSError, CancelledError, asyncio.CancelledError))
+        lost = is_refused or client.status != "running"
         if lost and not isinstance(error, (VibroimpactError, KeyboardInterrupt)):
             raise WorkerError(f"the scheduler of the cluster has ended; {RESUMES}") from None
         if type(error).__name__ == "KilledWorker":
@@ -63,7 +62,7 @@ def dask_client(address: str) -> Iterator[Any]:
     try:
         from distributed import Client
     except ImportError:
-        raise InputError(NO_DASK) from None
+        raise InputError("cluster: needs Dask; pip install distributed brings it") from None
     for name in [*logging.root.manager.loggerDict]:  # some have levels of their own
         if name.split(".")[0] == "distributed":  # what is lost is reported by us
             logging.getLogger(name).setLevel(logging.CRITICAL)

@@ -1,7 +1,7 @@
 """Executors: where chunks are computed. A chunk is the same call for all of them.
 
 - Threads compute where the work is in our own FMUs, past Python, where no interrupt is heard.
-- The present thread computes what else is short (:func:`inline_workers`).
+- The present thread computes what else is short (:class:`InlineExecutor`).
 - Processes of this machine, loky's, compute what else is long (:func:`process_workers`), and
   whatever an FMU of somebody else computes: it may crash, exit or hang there.
 - Workers of a Dask scheduler, or any executor of ``concurrent.futures`` (:mod:`.cluster`).
@@ -86,24 +86,19 @@ class InlineExecutor(Executor):
         return future
 
 
-@contextmanager
-def inline_workers() -> Iterator[Workers]:
-    yield Workers(InlineExecutor(), lambda: 1)
-
-
 class ThreadExecutor(Executor):
     """Executor of daemon threads, which an interrupted process does not wait for at its end."""
 
     def __init__(self, count: int) -> None:
         self.count = count
         self.calls: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
-        for _ in range(count):
-            threading.Thread(target=self._work, daemon=True).start()
 
-    def _work(self) -> None:
-        """Run calls until there is a None in place of one."""
-        for call in iter(self.calls.get, None):
-            call()
+        def work() -> None:
+            for call in iter(self.calls.get, None):  # until there is a None in place of one
+                call()
+
+        for _ in range(count):
+            threading.Thread(target=work, daemon=True).start()
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
         future: Future[Any] = Future()
@@ -136,12 +131,8 @@ def process_workers(count: int, foreign_fmus: str = "") -> Iterator[Workers]:
     import loky
 
     with sigint_blocked():
-        pool = loky.get_reusable_executor(
-            count,
-            timeout=IDLE_TIMEOUT,
-            initializer=initialize_worker,
-            initargs=(os.getpid(), foreign_fmus),
-        )
+        start: Any = {"initializer": initialize_worker, "initargs": (os.getpid(), foreign_fmus)}
+        pool = loky.get_reusable_executor(count, timeout=IDLE_TIMEOUT, **start)
         pool.submit(int)  # starts them
     try:
         with warnings.catch_warnings():
@@ -186,20 +177,15 @@ def initialize_worker(parent_id: int, _: str) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch() -> None:
-        wait_for_end_of_parent(parent_id)
+        if sys.platform == "win32":  # where its number stays a child's parent
+            import _winapi
+
+            with suppress(OSError):  # it has ended before
+                process = _winapi.OpenProcess(_winapi.SYNCHRONIZE, False, parent_id)
+                _winapi.WaitForSingleObject(process, _winapi.INFINITE)
+        else:
+            while os.getppid() == parent_id:
+                time.sleep(0.5)
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
-
-
-def wait_for_end_of_parent(parent_id: int) -> None:
-    """Return when the parent process has ended; on Windows its number stays a child's parent."""
-    if sys.platform == "win32":
-        import _winapi
-
-        with suppress(OSError):  # it has ended before
-            process = _winapi.OpenProcess(_winapi.SYNCHRONIZE, False, parent_id)
-            _winapi.WaitForSingleObject(process, _winapi.INFINITE)
-        return
-    while os.getppid() == parent_id:
-        time.sleep(0.5)

@@ -50,11 +50,8 @@ def tables_by_dimensions(data: xr.Dataset) -> dict[str, pd.DataFrame]:
     frames = {}
     for dims, names in groups.items():
         part = data[names]
-        if not dims:
-            frames["numbers"] = make_table(part)
-        else:
-            scalars = [name for name, array in part.coords.items() if not array.dims]
-            frames["_".join(dims)] = make_table(part.drop_vars(scalars))
+        scalars = [name for name, array in part.coords.items() if dims and not array.dims]
+        frames["_".join(dims) or "numbers"] = make_table(part.drop_vars(scalars))
     return frames
 
 
@@ -119,7 +116,9 @@ def make_table(data: xr.Dataset) -> pd.DataFrame:
         frame = pd.DataFrame(
             {str(n): [array.values.item()] for n, array in plain.variables.items()}
         )
-    return frame.rename(columns={name: column_heading(str(name), data) for name in frame.columns})
+    units = {name: array.attrs.get("units", "1") for name, array in data.variables.items()}
+    headings = {name: f"{name} [{unit}]" for name, unit in units.items() if unit != "1"}
+    return frame.rename(columns=headings)
 
 
 def decode_flags(array: xr.Variable) -> NDArray[Any]:
@@ -130,12 +129,6 @@ def decode_flags(array: xr.Variable) -> NDArray[Any]:
     words = flag_words(array.attrs)
     decoded = [words.get(int(value), "") for value in np.ravel(array.values)]
     return np.array(decoded, dtype=object).reshape(array.shape)
-
-
-def column_heading(name: str, data: xr.Dataset) -> str:
-    """Return a table column's heading, a variable's name with its unit: ``x1 [m]``."""
-    units = str(data[name].attrs.get("units", "1")) if name in data.variables else "1"
-    return name if units == "1" else f"{name} [{units}]"
 
 
 def write_csv(data: xr.Dataset, path: Path) -> list[Path]:
@@ -163,18 +156,11 @@ def write_xlsx(data: xr.Dataset, path: Path) -> list[Path]:
             for name, frame in frames.items():
                 frame.to_excel(book, sheet_name=name[:MAX_SHEET_NAME], index=False, inf_rep="inf")
             metadata_table(data).to_excel(book, sheet_name="about", index=False)
-            for sheet in book.sheets.values():
-                mark_texts_as_texts(sheet)
+            for cell in (c for sheet in book.sheets.values() for row in sheet for c in row):
+                if isinstance(cell.value, str):  # openpyxl takes =1+1 and #REF! for formulas
+                    cell.data_type = "s"
 
     return [write_atomically(path, write_sheets)]
-
-
-def mark_texts_as_texts(sheet: Any) -> None:
-    """Keep texts from being formulas or errors, for which openpyxl takes ``=1+1`` and ``#REF!``."""
-    for row in sheet.iter_rows():
-        for cell in row:
-            if isinstance(cell.value, str):
-                cell.data_type = "s"
 
 
 def metadata_table(data: xr.Dataset) -> pd.DataFrame:

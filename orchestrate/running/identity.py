@@ -12,11 +12,14 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from fmu_src.export.sources import import_statements
 
 from .job import Job
+
+if TYPE_CHECKING:
+    from ..fmu.description import Description
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ROOT = PACKAGE.name
@@ -25,30 +28,10 @@ PACKAGES_WITHOUT_NUMBERS = ("running", "cli", "show")  # packages that do not af
 DIGITS = 16  # hexadecimal, of a digest: short to read, and equal by chance in 2^-64
 
 
-class Fmu(Protocol):
-    """Protocol of an FMU's description as stores need it: path, name, GUID and FMI version."""
-
-    @property
-    def path(self) -> Path:
-        """Path of the FMU file."""
-
-    @property
-    def name(self) -> str:
-        """Name of the model."""
-
-    @property
-    def guid(self) -> str:
-        """GUID (FMI 2.0) or instantiation token (FMI 3.0)."""
-
-    @property
-    def fmi_version(self) -> str:
-        """Version of FMI, such as 3.0."""
-
-
 Identity = dict[str, Any]
 
 
-def identity_of(job: Job, fmus: Mapping[str, Fmu]) -> Identity:
+def identity_of(job: Job, fmus: Mapping[str, Description]) -> Identity:
     identity: Identity = {
         "question": {"kind": type(job).__name__, **job.parameters()},
         "fmu": {model: fmus[model].guid for model in job.models},
@@ -59,7 +42,7 @@ def identity_of(job: Job, fmus: Mapping[str, Fmu]) -> Identity:
 
 
 def describe_difference(stored: Identity, current: Identity) -> str:
-    for part in sorted(set(stored) | set(current), key=lambda name: (name != "question", name)):
+    for part in sorted({*stored, *current}, key=lambda name: (name != "question", name)):
         line = describe_first_difference(stored.get(part), current.get(part), "")
         if line and part == "code":
             modules = format_changed_modules(stored.get(part) or {}, current.get(part) or {})
@@ -101,21 +84,18 @@ def digests_of_code(module: str) -> dict[str, str]:
     while waiting:
         name = waiting.pop()
         path = source_file(name)
-        if (
-            name in digests
-            or path is None
-            or name.split(".")[1:2] in [[p] for p in PACKAGES_WITHOUT_NUMBERS]
-        ):
-            continue
-        digests[name], imported = read_digest_and_imports(path, name)
-        waiting += imported
+        if path is not None and name not in digests:
+            digests[name], imported = read_digest_and_imports(path, name)
+            waiting += imported
     return dict(sorted(digests.items()))
 
 
 @functools.cache
 def source_file(module: str) -> Path | None:
+    """Return the file of a module that may affect numbers; None of any other."""
     parts = module.split(".")
-    if len(parts) == 1 or (parts[0] != ROOT and parts[:2] != KERNELS):
+    is_ours = parts[:2] == KERNELS or (parts[0] == ROOT and len(parts) > 1)
+    if not is_ours or parts[1] in PACKAGES_WITHOUT_NUMBERS:
         return None
     path = PACKAGE.parent.joinpath(*parts)
     for file in (path.with_suffix(".py"), path / "__init__.py"):

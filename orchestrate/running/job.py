@@ -29,9 +29,8 @@ class Chunk:
     """Consecutive items of a job computed at once; ``after`` is the chunk it continues."""
 
     index: int
-    # its items: from `start` up to, not including, `stop`
-    start: int
-    stop: int
+    start: int  # its first item
+    stop: int  # and the first behind it
     after: int | None  # the chunk whose result it starts from
 
 
@@ -108,11 +107,8 @@ class Job(ABC):
 
     def parameters(self) -> dict[str, Any]:
         """Return the job's fields as JSON data for its identity; long lists summarized."""
-        return {
-            field.name: to_json_data(getattr(self, field.name))
-            for field in fields(self)
-            if field.name != "name"
-        }
+        own = (field.name for field in fields(self) if field.name != "name")
+        return {name: to_json_data(getattr(self, name)) for name in own}
 
     def format_call(self) -> str:
         """Return question and parameters in one line; of a long list, its ends and count."""
@@ -168,10 +164,9 @@ def to_json_data(value: Any) -> Any:
 
 def to_json_list_or_summary(values: Any) -> Any:
     parts = list(values)
-    if len(parts) <= MAX_LISTED or not all(
-        isinstance(part, (int, float, np.number)) for part in parts
-    ):
-        return [to_json_data(part) for part in parts]
+    are_numbers = all(isinstance(part, (int, float, np.number)) for part in parts)
+    if len(parts) <= MAX_LISTED or not are_numbers:
+        return list(map(to_json_data, parts))
     numbers = np.asarray(parts, dtype=float)
     summary = {"first": float(numbers[0]), "last": float(numbers[-1]), "count": len(numbers)}
     steps = np.diff(numbers)

@@ -65,7 +65,11 @@ class Journal:
         self._identity_text = b""  # part of each row's checksum
         try:
             self._db = sqlite3.connect(path, timeout=30.0, isolation_level=None)
-            self._create_tables()
+            self._db.execute("PRAGMA journal_mode=WAL")
+            self._db.execute("PRAGMA synchronous=NORMAL")  # a power cut may cost the last chunks
+            self._db.execute("CREATE TABLE IF NOT EXISTS about (name TEXT PRIMARY KEY, text TEXT)")
+            columns = "i INTEGER PRIMARY KEY, sha256 TEXT, data BLOB"
+            self._db.execute(f"CREATE TABLE IF NOT EXISTS chunks ({columns})")
             self._write_identity_if_new(json.dumps(identity), begun)
             self.identity, self.begun = self._read_identity()
         except (sqlite3.Error, OSError, ValueError, KeyError, TypeError) as error:
@@ -74,14 +78,6 @@ class Journal:
                 f"{path}: not usable as a journal ({error}); expected a writable place or a "
                 f"journal of this job: {ANEW}"
             ) from error
-
-    def _create_tables(self) -> None:
-        self._db.execute("PRAGMA journal_mode=WAL")
-        self._db.execute("PRAGMA synchronous=NORMAL")  # a power cut may cost the last chunks
-        self._db.execute("CREATE TABLE IF NOT EXISTS about (name TEXT PRIMARY KEY, text TEXT)")
-        self._db.execute(
-            "CREATE TABLE IF NOT EXISTS chunks (i INTEGER PRIMARY KEY, sha256 TEXT, data BLOB)"
-        )
 
     def _write_identity_if_new(self, identity: str, begun: str) -> None:
         """Write identity, start time and their checksum into a new journal; keep an old one's."""

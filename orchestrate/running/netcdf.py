@@ -28,10 +28,7 @@ def read_dataset(path: Path) -> xr.Dataset:
     )
     if content["is_large"]:
         return xr.open_dataset(path, engine="netcdf4", cache=False)
-    variables = {
-        name: (tuple(one["dims"]), one["values"], one["attributes"])
-        for name, one in content["variables"].items()
-    }
+    variables = {name: (tuple(dims), *rest) for name, (dims, *rest) in content["variables"].items()}
     return xr.decode_cf(xr.Dataset(variables, attrs=content["attributes"])).load()
 
 
@@ -56,25 +53,14 @@ def read_netcdf_content(path: Path, max_loaded: int) -> dict[str, Any]:
         file.set_auto_chartostring(False)
         size = unpacked_size(file)
         check_unpacked_size(path, size)
-        is_large = size > max_loaded
-        return {
-            "is_large": is_large,
-            "attributes": {name: file.getncattr(name) for name in file.ncattrs()},
-            "variables": {
-                name: read_variable_content(one, is_large) for name, one in file.variables.items()
-            },
-        }
+        is_large, variables = size > max_loaded, {}
+        for name, variable in file.variables.items():
+            for block in block_indices(variable.shape) if is_large else ():
+                variable[block or ...]
+            values = None if is_large else np.asarray(variable[...])
+            variables[name] = variable.dimensions, values, attributes_of(variable)
+        return {"is_large": is_large, "attributes": attributes_of(file), "variables": variables}
 
 
-def read_variable_content(variable: Any, is_large: bool) -> dict[str, Any]:
-    values = None
-    if is_large:
-        for block in block_indices(variable.shape):
-            variable[block or ...]
-    else:
-        values = np.asarray(variable[...])
-    return {
-        "dims": variable.dimensions,
-        "values": values,
-        "attributes": {name: variable.getncattr(name) for name in variable.ncattrs()},
-    }
+def attributes_of(holder: Any) -> dict[str, Any]:
+    return {name: holder.getncattr(name) for name in holder.ncattrs()}

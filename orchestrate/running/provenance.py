@@ -4,21 +4,28 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..lazy import xr
 from ..version import __version__
-from .identity import Fmu, Identity
+from .identity import Identity
 from .job import Job, format_brief
+
+if TYPE_CHECKING:
+    from ..fmu.description import Description
 
 
 def with_provenance(
-    dataset: xr.Dataset, job: Job, identity: Identity, fmus: Mapping[str, Fmu], begun: str
+    dataset: xr.Dataset, job: Job, identity: Identity, fmus: Mapping[str, Description], begun: str
 ) -> xr.Dataset:
-    call = job.format_call()
+    call, of_fmus = job.format_call(), {}
+    for model, fmu in fmus.items():
+        ending = f"_{model}" if len(fmus) > 1 else ""
+        own = {"fmu_model": fmu.name, "fmu_guid": fmu.guid, "fmi_version": fmu.fmi_version}
+        of_fmus |= {f"{name}{ending}": text for name, text in own.items()}
     attributes: dict[str, Any] = {
         **flatten_parameters(job.parameters()),
-        **fmu_attributes(fmus),
+        **of_fmus,
         "Conventions": "CF-1.11",
         "source": f"vibroimpact {__version__}",
         "question": job.asked,
@@ -34,16 +41,6 @@ def describe_dataset(data: xr.Dataset) -> str:
     if kind := data.attrs.get("question") or data.attrs.get("analysis"):
         return f"a result of {kind}"
     return f"a dataset over {', '.join(map(str, data.sizes)) or 'nothing'}"
-
-
-def fmu_attributes(fmus: Mapping[str, Fmu]) -> dict[str, str]:
-    attributes: dict[str, str] = {}
-    for model, fmu in fmus.items():
-        ending = f"_{model}" if len(fmus) > 1 else ""
-        attributes[f"fmu_model{ending}"] = fmu.name
-        attributes[f"fmu_guid{ending}"] = fmu.guid
-        attributes[f"fmi_version{ending}"] = fmu.fmi_version
-    return attributes
 
 
 def flatten_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:

@@ -13,10 +13,10 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
-from contextlib import AbstractContextManager, suppress
+from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,14 +24,17 @@ from ..files import make_writable_folder
 from ..lazy import xr
 from .bar import DELAY, progress_bar, update_bar
 from .chunk_schedule import ChunkSchedule, Task
-from .executors import Workers, compute_chunk, inline_workers, process_workers, thread_workers
-from .identity import Fmu, identity_of
+from .executors import InlineExecutor, Workers, compute_chunk, process_workers, thread_workers
+from .identity import identity_of
 from .job import Job, Table
 from .options import RunOptions
 from .store import open_store
 
+if TYPE_CHECKING:
+    from ..fmu.description import Description
+
 log = logging.getLogger(__name__)
-FmuFinder = Callable[[str], Fmu]  # from a model's name to its FMU
+FmuFinder = Callable[[str], "Description"]  # from a model's name to its FMU
 MIN_PARALLEL_SECONDS = 2.0  # estimated work left from which starting processes pays
 POLL_SECONDS = 0.5  # between two looks at the clock while chunks are computed
 
@@ -61,7 +64,7 @@ class Runner:
             job.require_supported_structure()
         self.jobs, self.options = jobs, options
         self.in_threads = all(job.in_threads for job in jobs)
-        self.fmus: dict[str, Fmu] = {model: find_fmu(model) for job in jobs for model in job.models}
+        self.fmus = {model: find_fmu(model) for job in jobs for model in job.models}
         others = (str(fmu.path.resolve()) for fmu in self.fmus.values() if options.fmu is not None)
         self.foreign = ",".join(filter(None, [foreign, *others]))  # FMUs of somebody else
         self.schedules: dict[str, ChunkSchedule] = {}
@@ -103,7 +106,8 @@ class Runner:
     def compute_all(self) -> None:
         with self.make_bar() as bar:
             if not (self.options.cluster or self.foreign):
-                with thread_workers(1) if self.in_threads else inline_workers() as workers:
+                inline = nullcontext(Workers(InlineExecutor(), lambda: 1))
+                with thread_workers(1) if self.in_threads else inline as workers:
                     fmus = self.fmus_to_send(workers)
                     self.compute_while(workers, fmus, bar, self.is_little_left)
             if not self.all_complete():
@@ -163,15 +167,12 @@ class Runner:
             if may_submit():
                 self.submit_tasks(workers, fmus)
             if not self.futures:
-                assert self.all_complete() or not may_submit(), (
-                    "nothing is under way, nothing is ready"
-                )
+                stuck = "nothing is under way, nothing is ready"
+                assert self.all_complete() or not may_submit(), stuck
                 continue
             if time.perf_counter() - self.start_time > DELAY:
-                notes = (
-                    schedule.job.progress_note(t.chunk.start)
-                    for schedule, t in self.futures.values()
-                )
+                begun = ((one.job, task.chunk.start) for one, task in self.futures.values())
+                notes = (job.progress_note(first) for job, first in begun)
                 update_bar(bar, next(filter(None, notes), self.bar_label()))
             finished, _ = wait(self.futures, timeout=POLL_SECONDS, return_when=FIRST_COMPLETED)
             for future in finished:
@@ -194,18 +195,13 @@ class Runner:
                 task = schedule.next_task(len(self.futures) + 1 < workers.max_in_flight())
                 if task is None:
                     break
-                chosen = {model: fmus[model] for model in schedule.job.models}
                 schedule.under_way.add(task.chunk.index)
-                code = schedule.identity["code"] if workers.remote else None
-                future = workers.executor.submit(
-                    compute_chunk,
-                    schedule.job,
-                    chosen,
-                    task.items,
-                    task.previous,
-                    task.warmup_items,
-                    code,
+                call = (
+                    *(schedule.job, {model: fmus[model] for model in schedule.job.models}),
+                    *(task.items, task.previous, task.warmup_items),
+                    schedule.identity["code"] if workers.remote else None,
                 )
+                future = workers.executor.submit(compute_chunk, *call)
                 self.futures[future] = schedule, task
 
     def make_ready(self, schedule: ChunkSchedule) -> bool:

@@ -30,8 +30,8 @@ log = logging.getLogger(__name__)
 MIN_COMPRESSED = 10_000  # values from which a variable is worth compressing
 LAST_SECOND = 253_402_300_799  # of the year 9999
 JOINED = 100  # chunks joined at a time: many small arrays leave holes in memory
-ZLIB_LEVEL = 1  # not higher: the last digits of numbers do not shrink, however long it tries
-
+# not higher: the last digits of numbers do not shrink, however long it tries
+COMPRESSION = {"zlib": True, "complevel": 1}
 
 STARTED: set[Path] = set()  # journals with chunks that this process has seen or written
 FINISHED: set[Path] = set()  # results that it has; both say how much an interruption loses
@@ -161,9 +161,8 @@ class DiskStore(Store):
             return False
         try:
             with closing(Journal(path, self.identity, timestamp())) as journal:
-                return not (
-                    journal.is_empty() or describe_difference(journal.identity, self.identity)
-                )
+                differs = describe_difference(journal.identity, self.identity)
+                return not (journal.is_empty() or differs)
         except StoreError:
             return False
 
@@ -211,10 +210,8 @@ class DiskStore(Store):
                 else:
                     columns.setdefault(name, []).append(np.concatenate(arrays))
         table: dict[str, Any] = {name: np.concatenate(columns.pop(name)) for name in [*columns]}
-        table |= {
-            name: StoredRows(self, name, [rows for rows, _ in each], each[0][1])
-            for name, each in shapes.items()
-        }
+        for name, each in shapes.items():
+            table[name] = StoredRows(self, name, [rows for rows, _ in each], each[0][1])
         return table
 
     def drop(self, index: int, reason: str = "") -> None:
@@ -301,12 +298,8 @@ def create_variable(file: Any, name: str, array: xr.DataArray) -> Any:
         if dimension not in file.dimensions:
             file.createDimension(str(dimension), size)
     create: Any = file.createVariable
-    compression = {
-        "zlib": True,
-        "complevel": ZLIB_LEVEL,
-        "chunksizes": file_block_shape(array.shape),
-    }
-    target = create(name, array.dtype, array.dims, fill_value=np.nan, **compression)
+    storage = {**COMPRESSION, "chunksizes": file_block_shape(array.shape), "fill_value": np.nan}
+    target = create(name, array.dtype, array.dims, **storage)
     target.set_var_chunk_cache(8 * BLOCK)
     target.setncatts(array.attrs)
     return target
@@ -336,22 +329,18 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
     from xarray.backends import NetCDF4DataStore
 
     dataset = dataset.assign_attrs({ATTRIBUTE: checksum(dataset)})
-    large_variables = [
-        name for name, variable in dataset.data_vars.items() if variable.size > MIN_COMPRESSED
-    ]
-    bulk = [  # in blocks, those whose rows are shorter than one
-        name
-        for name in large_variables
-        if dataset[name].dtype == float and len(list(block_indices(dataset[name].shape))) > 1
-    ]
-    encoding = {name: {"zlib": True, "complevel": ZLIB_LEVEL} for name in large_variables}
+    variables = dataset.data_vars.items()
+    large = {name: one for name, one in variables if one.size > MIN_COMPRESSED}
+    floats = {name: one for name, one in large.items() if one.dtype == float}
+    # in blocks, those whose rows are shorter than one
+    bulk = [name for name, one in floats.items() if len(list(block_indices(one.shape))) > 1]
+    others = {name: COMPRESSION for name in large if name not in bulk}
     open_file: Any = NetCDF4DataStore.open
 
     def write(path_to_write: Path) -> None:
         # xarray's to_netcdf imports Dask's scheduler to find a lock that nobody needs here
         with open_file(path_to_write, mode="w", lock=False) as file:
             targets = {name: create_variable(file.ds, str(name), dataset[name]) for name in bulk}
-            others = {name: options for name, options in encoding.items() if name not in bulk}
             dataset.drop_vars(bulk).dump_to_store(file, encoding=others)
             for name, target in targets.items():
                 for block in block_indices(dataset[name].shape):

@@ -22,7 +22,7 @@ def cache(tmp_path, monkeypatch):
     """A cache folder; a compiler that notes what it compiles."""
     made = []
     monkeypatch.setattr(sources, "compile_loop", lambda *what: made.append(what) or COMPILED)
-    exported.warn_once.cache_clear()
+    exported.log_once.cache_clear()
     monkeypatch.setattr("orchestrate.files.trusted_owners", lambda: ({os.getuid()}, set()))
     umask = os.umask(0o002)  # as of systems with a group for each user
     yield tmp_path / "cache", made

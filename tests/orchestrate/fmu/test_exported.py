@@ -102,7 +102,7 @@ def test_what_is_damaged_or_out_of_date_is_made_anew(maker, places, real, damage
 def test_what_others_could_have_planted_in_the_cache_is_made_anew(
     maker, places, real, caplog, of_folder
 ):
-    exported.warn_once.cache_clear()
+    exported.log_once.cache_clear()
     path = put(real["fmi3"], places[0])
     part = path.parent if of_folder else path
     part.chmod(part.stat().st_mode | 0o002)
@@ -118,7 +118,7 @@ def test_what_others_could_have_planted_in_the_cache_is_made_anew(
 
 
 def test_without_a_compiler_the_python_form_serves(maker, places, caplog):
-    exported.warn_once.cache_clear()
+    exported.log_once.cache_clear()
     maker.without.update({"fmi2", "fmi3"})
     for _ in range(2):
         assert find_or_export(OSCILLATOR).path == places[0] / "fmi2-python" / f"{OSCILLATOR}.fmu"
