@@ -11,9 +11,8 @@ H, steps = 0.01, 2000
 fmus, references = [], []
 for path, *names in OSCILLATOR, DRIVE:
     model = fmpy.read_model_description(path)
-    references += [
-        v.valueReference for name in names for v in model.modelVariables if v.name == name
-    ]
+    number = {variable.name: variable.valueReference for variable in model.modelVariables}
+    references += [number[name] for name in names]
     fmus.append(fmpy.instantiate_fmu(fmpy.extract(path), model, fmi_type="CoSimulation"))
     fmus[-1].setupExperiment(startTime=0.0)
     fmus[-1].enterInitializationMode()

@@ -6,9 +6,8 @@ from orchestrate import Structure, map, plot
 from orchestrate.show import figure_files
 
 paper = Structure.nondimensional(D=0.05)
-found = map(
-    paper, eta=np.linspace(0.5, 1.6, 30), e=np.linspace(0.1, 0.9, 15), transient=100, settle=50.0
-)
+axes = {"eta": np.linspace(0.5, 1.6, 30), "e": np.linspace(0.1, 0.9, 15)}
+found = map(paper, **axes, transient=100, settle=50.0)
 one_period = found.multiplicity == 1
 print(f"{float(one_period.mean()):.0%} of the map repeats after one period")
 print(f"largest gap: xi_Rel = {float(found.xi_rel_max.max()):.2f}")

@@ -21,15 +21,13 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-
-def read_public_names() -> dict[str, str]:
-    """Return a dict from public name to its submodule, read from the stub ``__init__.pyi``."""
-    stub = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
-    imports = (node for node in stub.body if isinstance(node, ast.ImportFrom))
-    return {alias.name: node.module or "" for node in imports for alias in node.names}
-
-
-PLACES = read_public_names()  # a name is imported when it is used, so that `import` takes no time
+_stub = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
+PLACES = {  # submodules by public name, which is imported when it is used: `import` takes no time
+    alias.name: node.module or ""
+    for node in _stub.body
+    if isinstance(node, ast.ImportFrom)
+    for alias in node.names
+}
 __all__ = sorted(PLACES)
 
 

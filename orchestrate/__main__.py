@@ -21,7 +21,9 @@ def run_command_line() -> int:
 
 def main() -> int:
     """Run the command line with its streams open and its signals heard; return its exit code."""
-    open_missing_streams()
+    while (number := os.open(os.devnull, os.O_RDWR)) <= 2:  # in place of a closed standard stream
+        os.set_inheritable(number, True)
+    os.close(number)
     sys.unraisablehook = resend_interrupt
     if not any(word.startswith("--cluster") for word in sys.argv):
         # xarray loads all of it, half a second, to ask of each array whether it is one of Dask's
@@ -52,13 +54,6 @@ def send_to_itself(number: int) -> None:
         signal.raise_signal(number)
     else:
         os.kill(os.getpid(), number)
-
-
-def open_missing_streams() -> None:
-    """Open closed ones of the standard streams (descriptors 0 to 2) on ``/dev/null``."""
-    while (number := os.open(os.devnull, os.O_RDWR)) <= 2:
-        os.set_inheritable(number, True)
-    os.close(number)
 
 
 if __name__ == "__main__":

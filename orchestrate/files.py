@@ -85,17 +85,9 @@ def remove_unlocked_folders(parent: Path, pattern: str) -> None:
     """Delete this user's temporary folders of a pattern whose locks nobody holds."""
     for folder in parent.glob(pattern):
         with suppress(OSError):
-            if is_folder_of_this_user(folder) and (folder / GUARD).is_file():
+            is_ours = sys.platform == "win32" or folder.lstat().st_uid == os.getuid()
+            if is_ours and not folder.is_symlink() and (folder / GUARD).is_file():
                 remove_locked_folder(folder, HeldLock(folder / GUARD))
-
-
-def is_folder_of_this_user(folder: Path) -> bool:
-    """Return whether a path is a real folder (no link) that belongs to the current user."""
-    return (
-        folder.is_dir()
-        and not folder.is_symlink()
-        and (sys.platform == "win32" or folder.lstat().st_uid == os.getuid())
-    )
 
 
 def is_written_by_trusted_only(path: Path) -> bool:
@@ -132,9 +124,8 @@ def write_atomically(path: str | os.PathLike[str], write: Callable[[Path], objec
         finally:
             folder.remove()
     except (OSError, RuntimeError) as error:  # the NetCDF library says RuntimeError at a full disk
-        raise StoreError(
-            f"{path}: cannot be written ({format_write_error(error, path.parent)})"
-        ) from error
+        reason = format_write_error(error, path.parent)
+        raise StoreError(f"{path}: cannot be written ({reason})") from error
     return path
 
 
@@ -205,7 +196,6 @@ def make_writable_folder(folder: str | os.PathLike[str]) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:
-        raise StoreError(
-            f"{folder}: {error.strerror or error}; expected a folder that can be written"
-        ) from None
+        reason = error.strerror or error
+        raise StoreError(f"{folder}: {reason}; expected a folder that can be written") from None
     return folder

@@ -16,7 +16,7 @@ from dataclasses import fields, is_dataclass
 from importlib import import_module
 from math import ceil
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +37,12 @@ def serve_requests() -> None:
     for number in range(3):  # what libraries print
         os.dup2(nowhere, number)
     for line in requests:
-        write_answer(answers, *run_reader(json.loads(line)))
+        header, arrays = run_reader(json.loads(line))
+        text = json.dumps(header).encode()
+        answers.write(len(text).to_bytes(8, "little") + text)
+        for array in (one for one in arrays if one.nbytes):
+            answers.write(array.view(np.uint8).data)
+        answers.flush()
 
 
 def run_reader(request: dict[str, Any]) -> tuple[dict[str, Any], Arrays]:
@@ -124,12 +129,3 @@ def pack_for_json(value: Any, arrays: Arrays) -> Any:
     if value is None or isinstance(value, (str, int, float)):
         return value
     raise ValueError(f"data of the type {type(value).__name__}")
-
-
-def write_answer(stream: BinaryIO, header: dict[str, Any], arrays: Arrays) -> None:
-    text = json.dumps(header).encode()
-    stream.write(len(text).to_bytes(8, "little") + text)
-    for array in arrays:
-        if array.nbytes:
-            stream.write(array.view(np.uint8).data)
-    stream.flush()

@@ -51,9 +51,8 @@ class Units:
             if kind is None:
                 raise InputError(f"{option} {text}: {part}; expected a list of {EXPECTED}")
             if kind in chosen:
-                raise InputError(
-                    f"{option} {text}: {chosen[kind]} and {word}; expected one unit of {kind}"
-                )
+                both = f"{chosen[kind]} and {word}"
+                raise InputError(f"{option} {text}: {both}; expected one unit of {kind}")
             chosen[kind] = word
         return cls(**chosen)
 
@@ -219,9 +218,8 @@ def format_quantity_range(
     data: xr.Dataset, low: float, high: float, unit: str, form: str = ".4g"
 ) -> str:
     """Format two SI values as a range in a dataset's display units: ``41 to 45 Hz``."""
-    (first, word), (last, _) = (
-        format_number_and_unit(data, end, unit, form) for end in (low, high)
-    )
+    first, word = format_number_and_unit(data, low, unit, form)
+    last, _ = format_number_and_unit(data, high, unit, form)
     return f"eta = {first} to {last}" if word == "eta" else f"{first} to {last} {word}".rstrip()
 
 

@@ -62,28 +62,21 @@ def replace_variable_table(page: str, reference: Reference, table: str) -> str:
     return f"{head}{begin}\n{table}{end}{tail}"
 
 
-def simulate_oscillator_example(
-    fmu: str | PathLike[str],
-) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def simulate_oscillator_example(fmu: str | PathLike[str]) -> dict[str, np.ndarray]:
     names, eta = ("x1", "x2", "x_rel", "in_contact"), 0.4
     period = 2.0 * math.pi / eta
     times = [0.0, *(500 * period + np.linspace(0.0, 2 * period, 600))]
     box = {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
-    return times_and_columns(run_and_record(fmu, times, names, lambda _: {}, **box), names)
+    rows = run_and_record(fmu, times, names, lambda _: {}, **box)[1:]
+    return dict(zip(("times", *names), np.array(rows, dtype=float).T, strict=True))
 
 
-def simulate_shaker_limits(fmu: str | PathLike[str]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def simulate_shaker_limits(fmu: str | PathLike[str]) -> dict[str, np.ndarray]:
     names = ("voltage", "current", "box_position", "limited")
     coil = {"coil_inductance": 0.02, "voltage_limit": 5.0, "current_limit": 1.0}
     times = np.linspace(0.0, 1.5, 801).tolist()
-    return times_and_columns(run_and_record(fmu, times, names, growing_sine_command, **coil), names)
-
-
-def times_and_columns(
-    rows: Sequence[Sequence[float]], names: Sequence[str]
-) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    times, *values = np.array(rows, dtype=float)[1:].T
-    return times, dict(zip(names, values, strict=True))
+    rows = run_and_record(fmu, times, names, growing_sine_command, **coil)[1:]
+    return dict(zip(("times", *names), np.array(rows, dtype=float).T, strict=True))
 
 
 def growing_sine_command(time: float, frequency: float = 40.0) -> dict[str, float]:
@@ -105,10 +98,10 @@ def draw_and_save_documentation(
         plot = shaker.draw_run_up(values["time"], values["speed"], values["box_position"])
     elif reference is COIL:
         scheme, image = electrodynamic_shaker.draw_shaker(), icon.draw_coil_icon()
-        plot = electrodynamic_shaker.draw_limited_run(*simulate_shaker_limits(fmu))
+        plot = electrodynamic_shaker.draw_limited_run(simulate_shaker_limits(fmu))
     else:
         scheme, image = oscillator.draw_scheme(), icon.draw_oscillator_icon()
-        plot = oscillator.draw_example(*simulate_oscillator_example(fmu))
+        plot = oscillator.draw_example(simulate_oscillator_example(fmu))
     figure_files.save(scheme, folder / "documentation" / "scheme", **tight)
     figure_files.save(image, folder / "model", dpi=96)
     figure_files.save(plot, folder / "documentation" / "plot", ("svg",))

@@ -121,8 +121,7 @@ def time_periods_in_pure_python(fmu: str | PathLike[str], eta: float, count: int
     """Return the seconds of ``count`` periods in the Python kernel, in its own process."""
     environment = {**os.environ, "VIBROIMPACT_PURE_PYTHON": "1"}
     command = [sys.executable, "-m", "tools.benchmark", "--once", str(fmu), str(eta), str(count)]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    return float(done.stdout)
+    return float(subprocess.check_output(command, env=environment, text=True))
 
 
 def time_impact(fmu: str | PathLike[str], etas: Sequence[float], count: int) -> float:
@@ -209,9 +208,8 @@ def print_comparison_of_solvers(count: int) -> None:
     print("".join(f"{name:>12}" for name in COLUMNS), "  (the last two: times the native FMU)")
     seconds, impacts = 0.0, 0
     for eta in ETAS:
-        taken, count_of_impacts = min(
-            time_periods_and_count_impacts(native, eta, count) for _ in range(3)
-        )
+        runs = (time_periods_and_count_impacts(native, eta, count) for _ in range(3))
+        taken, count_of_impacts = min(runs)
         seconds, impacts = seconds + taken, impacts + count_of_impacts
         each = taken / count
         box = partial(lambda eta, time: -math.sin(eta * time), eta)  # of amplitude 1/eta^2 m

@@ -11,6 +11,7 @@ import json
 import re
 import shutil
 import sys
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -25,7 +26,7 @@ PAGES, CLAIMS = (DOCS / "paper.md", DOCS / "claims.md"), DOCS / "claims.json"
 
 
 def verdict_count_lines(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    number = {verdict: sum(row["verdict"] == verdict for row in rows) for verdict in WORDS}
+    number = Counter(row["verdict"] for row in rows)
     return [
         f"Of {len(rows)} statements of all sections {number['yes']} are borne out, "
         f"{number['partly']} in part, {number['no']} are not."

@@ -21,11 +21,8 @@ from urllib.parse import unquote, urldefrag, urlsplit
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 RESOURCE_ATTRIBUTES = {
-    "script": "src",
+    **dict.fromkeys(("script", "img", "iframe", "source"), "src"),
     "link": "href",
-    "img": "src",
-    "iframe": "src",
-    "source": "src",
 }
 
 
@@ -68,9 +65,8 @@ class Site:
         return [f"{path.name}: {one}" for path, one in every if one.lower().startswith(begins)]
 
     def broken_links(self) -> list[str]:
-        every = [
-            (p, one) for p, page in self.pages.items() for one in (*page.links, *page.resources)
-        ]
+        each = ((p, (*page.links, *page.resources)) for p, page in self.pages.items())
+        every = ((p, one) for p, addresses in each for one in addresses)
         return [f"{p.name}: {one}" for p, one in every if not self.target_exists(p, one)]
 
     def target_exists(self, path: Path, address: str) -> bool:

@@ -163,15 +163,9 @@ def states_as_text():
 def test_5_two_instances_and_two_processes():
     assert states_as_text() == states_as_text()
     program = "import json, test_fmu; print('ANSWER', json.dumps(test_fmu.states_as_text()))"
-    environment = {**os.environ, "FMU": str(Path(FMU).resolve())}
-    done = subprocess.run(
-        [sys.executable, "-c", program],
-        cwd=Path(__file__).parent,
-        env=environment,
-        capture_output=True,
-        text=True,
-    )
-    (answer,) = [line[7:] for line in done.stdout.splitlines() if line.startswith("ANSWER ")]
+    where = {"cwd": Path(__file__).parent, "env": {**os.environ, "FMU": str(Path(FMU).resolve())}}
+    said = subprocess.check_output([sys.executable, "-c", program], text=True, **where)
+    (answer,) = [line[7:] for line in said.splitlines() if line.startswith("ANSWER ")]
     assert json.loads(answer) == states_as_text()
 
 
@@ -203,10 +197,8 @@ def test_6_bad_values_are_refused_by_name(name, low, high):
         message = run.message_of_refusal(lambda value=value: run.set(**{name: value}))
         assert name in message and "expected" in message
     run.initialize()
-    assert run.step_to(10.0).get("x_rel")[0] >= 0.0  # the instance is usable,
-    assert twin.step_to(20.0).get(*STATE) == Run(**CHAOS).step_to(10.0, 20.0).get(
-        *STATE
-    )  # others live on
+    assert run.step_to(10.0).get("x_rel")[0] >= 0.0  # the instance is usable, others live on
+    assert twin.step_to(20.0).get(*STATE) == Run(**CHAOS).step_to(10.0, 20.0).get(*STATE)
 
 
 @pytest.mark.parametrize("step", [-1.0, math.nan, math.inf])

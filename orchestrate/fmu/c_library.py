@@ -77,9 +77,8 @@ def is_trusted(path: Path) -> bool:
     """Return whether a library came with the package, or nobody else can have written it."""
     if path.is_relative_to(SHIPPED):
         return True
-    return all(
-        part.exists() and is_written_by_trusted_only(part) for part in paths_to_protect(path)
-    )
+    parts = paths_to_protect(path)
+    return all(part.exists() and is_written_by_trusted_only(part) for part in parts)
 
 
 def paths_to_protect(path: Path) -> tuple[Path, ...]:

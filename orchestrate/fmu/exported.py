@@ -157,9 +157,8 @@ def find_or_export(
     reasons: list[CannotExport] = []
     for candidate in dict.fromkeys((form, WITHOUT_COMPILER)):
         if candidate != form:
-            log_once(
-                f"no {form} FMU here, {candidate} serves instead, without events: {reasons[0]}"
-            )
+            text = f"no {form} FMU here, {candidate} serves instead, without events"
+            log_once(f"{text}: {reasons[0]}")
         paths = [base / candidate / f"{model}.fmu" for base in folders]
         for base, path in zip(folders, paths, strict=True):
             if is_current_and_trusted(candidate, model, base):

@@ -81,9 +81,8 @@ class Instance:
             raise InputError(f"{reason}; expected an FMU with a binary for this machine") from None
         self._open = True
         self._start, self._time, self._length = c_double(), c_double(), c_double()
-        self._reset, self._initialize, self._step = (
-            self._prepare_fmi3() if self.is_fmi3 else self._prepare_fmi2()
-        )
+        prepare = self._prepare_fmi3 if self.is_fmi3 else self._prepare_fmi2
+        self._reset, self._initialize, self._step = prepare()
 
     @property
     def is_fmi3(self) -> bool:
@@ -154,10 +153,8 @@ class Instance:
     def status_error(self, function: str, status: int) -> FmuError:
         """Return the ``FmuError`` for a status that ends a run: what was logged, or the status."""
         in_words = STATUSES[status] if 0 <= status < len(STATUSES) else f"status {status}"
-        name = self.description.name
-        return self.error_from_log(
-            f"{function} of the FMU {name} failed ({in_words}) without a message"
-        )
+        call = f"{function} of the FMU {self.description.name}"
+        return self.error_from_log(f"{call} failed ({in_words}) without a message")
 
     def check_status(self, function: str, status: int) -> None:
         """Raise ``FmuError`` unless a call of the FMU answered OK, or a warning, which is kept."""
@@ -221,17 +218,15 @@ class Instance:
     def _prepare_transfers(self, names: tuple[str, ...]) -> list[Transfer]:
         """Prepare an FMI call per data type for variables; the first name: ``Set``/``Get``."""
         verb, *variables = names
+        found = [(self.variable(name), 1) for name in variables]
         positions: dict[str, list[int]] = {}
-        for position, name in enumerate(variables):
-            positions.setdefault(self.variable(name).type, []).append(position)
-        transfers = [
-            self._prepare_transfer(
-                verb, kind, [(self.variable(variables[i]), 1) for i in indices], indices
-            )
+        for position, (variable, _) in enumerate(found):
+            positions.setdefault(variable.type, []).append(position)
+        self._transfers[names] = [
+            self._prepare_transfer(verb, kind, [found[i] for i in indices], indices)
             for kind, indices in positions.items()
         ]
-        self._transfers[names] = transfers
-        return transfers
+        return self._transfers[names]
 
     def _prepare_transfer(
         self, verb: str, kind: str, variables: Sequence[tuple[Any, int]], positions: list[int]

@@ -141,26 +141,26 @@ def checked_positive(name: str, value: Any) -> float:
     return number
 
 
+OF_PLAIN_TYPES: dict[Any, Check] = {bool: checked_flag, str | None: checked_text}
+
+
 def whole(minimum: int, maximum: int = MAX_COUNT) -> Check:
     return partial(checked_integer, minimum=minimum, maximum=maximum)
 
 
 @cache
 def checks_by_field(kind: type) -> dict[str, Check]:
+    """Return the checks that the types of a dataclass's fields carry, or that are known of them."""
     types = get_type_hints(kind, include_extras=True)
-    checks = {field.name: check_of(types[field.name]) for field in fields(kind)}
-    return {name: check for name, check in checks.items() if check is not None}
-
-
-def check_of(kind: Any) -> Check | None:
-    """Return the check that a type carries, or that is known of it; None if there is none."""
-    if hasattr(kind, "__metadata__"):
-        found: Check = kind.__metadata__[0]
-        return found
-    if get_origin(kind) is Literal:
-        return partial(checked_word, known=get_args(kind))
-    known: dict[Any, Check] = {bool: checked_flag, str | None: checked_text}
-    return known.get(kind)
+    checks: dict[str, Check] = {}
+    for name, one in ((field.name, types[field.name]) for field in fields(kind)):
+        if hasattr(one, "__metadata__"):
+            checks[name] = one.__metadata__[0]
+        elif get_origin(one) is Literal:
+            checks[name] = partial(checked_word, known=get_args(one))
+        elif one in OF_PLAIN_TYPES:
+            checks[name] = OF_PLAIN_TYPES[one]
+    return checks
 
 
 # Types of keywords that several public functions have, each with its check: `Annotated` is a type

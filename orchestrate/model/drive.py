@@ -172,9 +172,8 @@ class Drive(Described):
         >>> drive.motor_constant, drive.armature_resistance, round(drive.rotor_inertia, 9)
         (0.06, 12.0, 5e-05)
         """
-        constant, resistance = motor_constant_and_resistance(
-            rated_voltage, no_load_speed, stall_torque
-        )
+        points = rated_voltage, no_load_speed, stall_torque
+        constant, resistance = motor_constant_and_resistance(*points)
         if (rotor_inertia is None) == (mechanical_time_constant is None):
             raise InputError(
                 f"rotor_inertia = {rotor_inertia} and mechanical_time_constant = "
@@ -228,19 +227,15 @@ class Drive(Described):
 
     def Omega_b(self, structure: Structure) -> float:
         """Return the empty box's natural frequency over the structure's omega."""
-        omega, mass = structure.omega, self.box_mass
-        guess = math.sqrt(self.box_stiffness / mass) / omega
-        return invert_exactly(
-            guess, lambda ratio: suspension_stiffness(ratio, omega, mass), self.box_stiffness
-        )
+        omega, mass, stiffness = structure.omega, self.box_mass, self.box_stiffness
+        guess = math.sqrt(stiffness / mass) / omega
+        return invert_exactly(guess, lambda x: suspension_stiffness(x, omega, mass), stiffness)
 
     def D_b(self, structure: Structure) -> float:
         """Return the box's damping ratio, c_b/(2 omega M_t)."""
-        omega, mass = structure.omega, self.box_mass
-        guess = self.box_damping / (2.0 * omega * mass)
-        return invert_exactly(
-            guess, lambda ratio: damping_from_ratio(ratio, omega, mass), self.box_damping
-        )
+        omega, mass, damping = structure.omega, self.box_mass, self.box_damping
+        guess = damping / (2.0 * omega * mass)
+        return invert_exactly(guess, lambda ratio: damping_from_ratio(ratio, omega, mass), damping)
 
     def volts(self, structure: Structure) -> float:
         """Return the unit of voltage, V: the one whose no-load speed is the structure's omega."""
@@ -259,12 +254,8 @@ def motor_constant_and_resistance(
     rated_voltage: float, no_load_speed: float, stall_torque: float
 ) -> tuple[float, float]:
     """Return motor constant K, N m/A, and resistance R_a, Ohm, from no-load and stall points."""
-    checked = {
-        "rated_voltage": rated_voltage,
-        "no_load_speed": no_load_speed,
-        "stall_torque": stall_torque,
-    }
-    for name, value in checked.items():
+    names = "rated_voltage", "no_load_speed", "stall_torque"
+    for name, value in zip(names, (rated_voltage, no_load_speed, stall_torque), strict=True):
         checked_range(name, value, low=0.0, open_low=True)
     constant = rated_voltage / no_load_speed
     return constant, constant * rated_voltage / stall_torque

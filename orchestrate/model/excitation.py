@@ -145,13 +145,11 @@ class Excitation(Described):
             ratio = frequency * frequency * mass / stiffness
             loss = sum(dampers.values()) * frequency / stiffness
             if (1.0 - ratio) ** 2 + loss**2 <= 4.0 * least:
-                dampers_text = " and ".join(
-                    f"{damper} = {dampers[damper]!r} N s/m" for damper in dampers
-                )
+                texts = (f"{damper} = {value!r} N s/m" for damper, value in dampers.items())
                 natural = math.sqrt(stiffness / mass)
                 raise InputError(
                     f"frequency = {frequency!r} rad/s (eta = {self.eta(structure)!r}): the natural "
-                    f"frequency of {name}, {natural!r} rad/s, with {dampers_text}; expected "
+                    f"frequency of {name}, {natural!r} rad/s, with {' and '.join(texts)}; expected "
                     f"{' + '.join(dampers)} > 0, or a frequency further than 1e-6 of it away"
                 )
 

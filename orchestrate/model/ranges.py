@@ -192,13 +192,7 @@ EXCITATION = {
     for quantity in (
         Quantity("frequency", "rad/s", "Angular frequency Omega of the box", SMALLEST, LARGEST),
         Quantity("amplitude", "m", "Amplitude a of the box", 0.0, INPUTS["box_amplitude"].maximum),
-        Quantity(
-            "phase",
-            "rad",
-            INPUTS["phase_start"].description,
-            INPUTS["phase_start"].minimum,
-            INPUTS["phase_start"].maximum,
-        ),
+        replace(INPUTS["phase_start"], name="phase"),
         *(replace(INPUTS[name], name=short) for short, name in PUSHES.items()),
     )
 }
@@ -208,45 +202,38 @@ LEVEL = Quantity("level", "m/s2", "Peak acceleration a Omega^2 of the box", SMAL
 COMPLETE = ({"eta"}, {"frequency", "amplitude"}, {"frequency", "level"})
 
 
-def positive_quantity(name: str, description: str) -> Quantity:
-    return Quantity(name, "1", description, SMALLEST, LARGEST)
-
-
-def non_negative_quantity(name: str, description: str) -> Quantity:
-    return Quantity(name, "1", description, 0.0, LARGEST / 2.0)
-
-
+POSITIVE, NOT_NEGATIVE, RATIO = (SMALLEST, LARGEST), (0.0, LARGEST), (0.0, LARGEST / 2.0)
 DATASHEET = {  # of an electrodynamic shaker
-    quantity.name: quantity
-    for quantity in (
-        Quantity("rated_force", "N", "Peak of a sine", SMALLEST, LARGEST),
-        Quantity("moving_mass", "kg", "Of the bare table with its coil", SMALLEST, LARGEST),
-        Quantity("suspension_resonance", "Hz", "Of the bare table", SMALLEST, LARGEST),
-        Quantity("amplifier_power", "VA", "Of a sine", SMALLEST, LARGEST),
-        Quantity("travel", "m", "Peak to peak; 0: no stops", 0.0, LARGEST),
-        Quantity("payload", "kg", "What is fixed to the table", 0.0, LARGEST),
-        non_negative_quantity("damping_ratio", "Of the bare table with its coil open"),
+    name: Quantity(name, unit, description, *ends)
+    for name, unit, description, ends in (
+        ("rated_force", "N", "Peak of a sine", POSITIVE),
+        ("moving_mass", "kg", "Of the bare table with its coil", POSITIVE),
+        ("suspension_resonance", "Hz", "Of the bare table", POSITIVE),
+        ("amplifier_power", "VA", "Of a sine", POSITIVE),
+        ("travel", "m", "Peak to peak; 0: no stops", NOT_NEGATIVE),
+        ("payload", "kg", "What is fixed to the table", NOT_NEGATIVE),
+        ("damping_ratio", "1", "Of the bare table with its coil open", RATIO),
     )
 }
 RATIO_QUANTITIES = {
-    quantity.name: quantity
-    for quantity in (
-        Quantity("omega", "rad/s", "Frequency unit sqrt(k1/m1), (2)", SMALLEST, LARGEST),
-        positive_quantity("mu", "Mass ratio m2/m1, (2)"),
-        positive_quantity("kappa", "Stiffness ratio k2/k1, (2)"),
-        non_negative_quantity("D", "Damping ratio of both masses, (8)"),
-        non_negative_quantity("D1", "Damping ratio of mass 1, (8)"),
-        non_negative_quantity("D2", "Damping ratio of mass 2, (8)"),
-        Quantity("f1", "Hz", "Natural frequency of mass 1 alone", SMALLEST, LARGEST),
-        Quantity("f2", "Hz", "Natural frequency of mass 2 alone", SMALLEST, LARGEST),
-        non_negative_quantity("zeta1", "Damping ratio of mass 1 at its own frequency"),
-        non_negative_quantity("zeta2", "Damping ratio of mass 2 at its own frequency"),
-        Quantity("eta", "1", "Frequency ratio Omega/omega, (6)", 1e-6, 1e6),
-        positive_quantity("beta", "Mass ratio m1/M_t"),
-        positive_quantity("epsilon", "The unbalance's share in the inertia, S^2/(J M_t)"),
-        positive_quantity("b", "Slope of the torque line, K^2/(R_a J omega)"),
-        non_negative_quantity("Omega_b", "The box's own frequency over omega"),
-        non_negative_quantity("D_b", "Damping ratio of the box, c_b/(2 omega M_t)"),
+    name: Quantity(name, unit, description, *ends)
+    for name, unit, description, ends in (
+        ("omega", "rad/s", "Frequency unit sqrt(k1/m1), (2)", POSITIVE),
+        ("mu", "1", "Mass ratio m2/m1, (2)", POSITIVE),
+        ("kappa", "1", "Stiffness ratio k2/k1, (2)", POSITIVE),
+        ("D", "1", "Damping ratio of both masses, (8)", RATIO),
+        ("D1", "1", "Damping ratio of mass 1, (8)", RATIO),
+        ("D2", "1", "Damping ratio of mass 2, (8)", RATIO),
+        ("f1", "Hz", "Natural frequency of mass 1 alone", POSITIVE),
+        ("f2", "Hz", "Natural frequency of mass 2 alone", POSITIVE),
+        ("zeta1", "1", "Damping ratio of mass 1 at its own frequency", RATIO),
+        ("zeta2", "1", "Damping ratio of mass 2 at its own frequency", RATIO),
+        ("eta", "1", "Frequency ratio Omega/omega, (6)", (1e-6, 1e6)),
+        ("beta", "1", "Mass ratio m1/M_t", POSITIVE),
+        ("epsilon", "1", "The unbalance's share in the inertia, S^2/(J M_t)", POSITIVE),
+        ("b", "1", "Slope of the torque line, K^2/(R_a J omega)", POSITIVE),
+        ("Omega_b", "1", "The box's own frequency over omega", RATIO),
+        ("D_b", "1", "Damping ratio of the box, c_b/(2 omega M_t)", RATIO),
     )
 }
 

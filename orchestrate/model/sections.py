@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -37,7 +37,6 @@ TO_RAD_S: dict[str, Callable[[float], float]] = {
     "rpm": lambda value: TURN * value / 60.0,
 }
 COMMON_NUMBERS = tuple(name for name in STRUCTURE if name not in MECHANICS)
-COMMON_KEYS = (*COMMON_NUMBERS, *FLAGS)
 OMEGAS = tuple(f"omega_{unit}" for unit in TO_RAD_S)
 MODAL_KEYS = ("f1_hz", "f2_hz", "zeta1", "zeta2")
 OF_ONE_MASS = {"m": "m1", "k": "k1", "d": "d1", "f_hz": "f1_hz", "zeta": "zeta1"}
@@ -46,10 +45,7 @@ FREQUENCIES = (*(f"frequency_{unit}" for unit in TO_RAD_S), "eta")
 AMPLITUDES = ("amplitude", "acceleration_g")
 SI_BOX = tuple(name for name in DRIVE if name.startswith("box_"))
 SI_MOTOR = tuple(name for name in DRIVE if name not in SI_BOX)
-TORQUE_LINE_KEYS = (
-    "motor_constant",
-    "armature_resistance",
-)  # what a datasheet tells in its own way:
+TORQUE_LINE_KEYS = ("motor_constant", "armature_resistance")  # of which a datasheet has others:
 SPEEDS = tuple(f"no_load_speed_{unit}" for unit in TO_RAD_S)
 DATASHEET_KEYS = ("rated_voltage", "stall_torque", *SPEEDS, "mechanical_time_constant")
 MOTOR_NUMBERS, BOX_NUMBERS = ("beta", "epsilon", "b"), ("Omega_b", "D_b")
@@ -67,12 +63,11 @@ QUANTITIES = {
     },
     **{
         name: Quantity(name, unit, "", SMALLEST, LARGEST)
-        for name, unit in zip(
-            DATASHEET_KEYS[:2] + DATASHEET_KEYS[-1:], ("V", "N.m", "s"), strict=True
+        for name, unit in (
+            *(("rated_voltage", "V"), ("stall_torque", "N.m")),
+            *(("mechanical_time_constant", "s"), ("f1_hz", "Hz"), ("f2_hz", "Hz")),
         )
     },
-    "f1_hz": dataclasses.replace(RATIO_QUANTITIES["f1"], name="f1_hz"),
-    "f2_hz": dataclasses.replace(RATIO_QUANTITIES["f2"], name="f2_hz"),
     "acceleration_g": Quantity("acceleration_g", "1", "", 0.0, LARGEST),
 }
 Described = TypeVar("Described")
@@ -103,10 +98,8 @@ class Section:
         """Return whether the section has keys of ``second``; raise if it mixes both groups."""
         first_keys, second_keys = self.present_keys(first), self.present_keys(second)
         if first_keys and second_keys:
-            kinds = f"{', '.join(first)}, or {', '.join(second)}"
-            raise self.error(
-                second_keys[0], f"given with {first_keys[0]}; expected keys of one kind: {kinds}"
-            )
+            text = f"given with {first_keys[0]}; expected keys of one kind: {', '.join(first)}"
+            raise self.error(second_keys[0], f"{text}, or {', '.join(second)}")
         return bool(second_keys)
 
     def at_most_one(self, keys: Collection[str]) -> str | None:
@@ -128,15 +121,11 @@ class Section:
                 raise self.error(key, f"missing; expected all of {', '.join(keys)}")
 
     def number(self, key: str) -> float:
-        """Return a key's value as a float; raise ``InputError`` if it is out of its range."""
+        """Return a key's number or flag; raise ``InputError`` if it is none or out of range."""
+        check: Callable[[Any], float] = partial(checked_flag, key)
+        check = QUANTITIES[key].check if key in QUANTITIES else check
         try:
-            return QUANTITIES[key].check(self.values[key])
-        except InputError as error:
-            raise InputError(f"{self.path}: {self.name}.{error}") from None
-
-    def flag(self, key: str) -> bool:
-        try:
-            return checked_flag(key, self.values[key])
+            return check(self.values[key])
         except InputError as error:
             raise InputError(f"{self.path}: {self.name}.{error}") from None
 
@@ -159,12 +148,11 @@ class Section:
 def read_structure(section: Section) -> Structure:
     if section.values.get("wall") is True:  # one mass, as Structure.one_mass calls its numbers
         own = {OF_ONE_MASS.get(key, key): value for key, value in section.values.items()}
-        section = dataclasses.replace(section, values=own)
-    section.allow_only(*COMMON_KEYS, "preload", *MECHANICS, *MODAL_KEYS, *RATIO_KEYS)
-    values: dict[str, Any] = section.present_numbers(COMMON_NUMBERS)
+        section = replace(section, values=own)
+    section.allow_only(*COMMON_NUMBERS, *FLAGS, "preload", *MECHANICS, *MODAL_KEYS, *RATIO_KEYS)
+    values: dict[str, Any] = section.present_numbers((*COMMON_NUMBERS, *FLAGS))
     if section.at_most_one(("clearance", "preload")) == "preload":
         values["clearance"] = -section.number("preload")
-    values |= {name: section.flag(name) for name in FLAGS if name in section.values}
     if section.present_keys(MODAL_KEYS):
         section.uses_second_form(MODAL_KEYS, (*MECHANICS[2:], *RATIO_KEYS))
         if wall := values.get("wall", False):
@@ -227,15 +215,13 @@ def read_drive(motor: Section, box: Section, structure: Structure | None) -> Dri
 
 
 def read_shaker(section: Section) -> Shaker:
-    section.allow_only(*SHAKER_SI, *SHAKER_COMMON, "current_control", *DATASHEET)
-    values: dict[str, Any] = section.present_numbers((*SHAKER_SI, *SHAKER_COMMON, *DATASHEET))
-    if "current_control" in section.values:
-        values |= {"current_control": section.flag("current_control")}
+    keys = (*SHAKER_SI, *SHAKER_COMMON, "current_control", *DATASHEET)
+    section.allow_only(*keys)
+    values: dict[str, Any] = section.present_numbers(keys)
     section.require_all(("force_factor", "coil_resistance"))
     if section.uses_second_form(SHAKER_SI, DATASHEET):
-        section.require_all(
-            ("rated_force", "moving_mass", "suspension_resonance", "amplifier_power")
-        )
+        needed = "rated_force", "moving_mass", "suspension_resonance", "amplifier_power"
+        section.require_all(needed)
         return section.construct(lambda: Shaker.from_datasheet(**values))
     section.require_all(("table_mass", "suspension_stiffness", "suspension_damping"))
     return section.construct(lambda: Shaker(**values))
@@ -243,15 +229,10 @@ def read_shaker(section: Section) -> Shaker:
 
 def check_m1_given(structure: Section, motor: Section) -> None:
     """Raise if a motor is in SI but the structure's mass m1 is left to its default of 1 kg."""
-    if (
-        structure.present_keys(OMEGAS)
-        and not structure.present_keys(("m1",))
-        and not motor.present_keys(("beta",))
-    ):
-        key = structure.present_keys(OMEGAS)[0]
-        raise structure.error(
-            "m1", f"missing with {key}; expected it, as the motor feels the masses"
-        )
+    if (omegas := structure.present_keys(OMEGAS)) and "m1" not in structure.values:
+        text = f"missing with {omegas[0]}; expected it, as the motor feels the masses"
+        if "beta" not in motor.values:
+            raise structure.error("m1", text)
 
 
 def read_si_drive(motor: Section, box: dict[str, float]) -> Drive:

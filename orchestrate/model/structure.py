@@ -139,9 +139,8 @@ class Structure(StructureText, Described):
         if self.wall and self.bonded:
             raise InputError("bonded = True with wall = True: expected one of both at most")
         if 0.0 < self.stroke < self.clearance and not self.bonded:
-            raise InputError(
-                f"stroke = {self.stroke!r} m: expected at least clearance = {self.clearance!r} m"
-            )
+            expected = f"expected at least clearance = {self.clearance!r} m"
+            raise InputError(f"stroke = {self.stroke!r} m: {expected}")
 
     @classmethod
     def one_mass(
@@ -233,7 +232,7 @@ class Structure(StructureText, Described):
         check_keywords(added, "m1", *numbers, *FLAGS)
         v = {name: RATIO_QUANTITIES[name].check(x) for name, x in numbers.items() if x is not None}
         m1 = STRUCTURE["m1"].check(m1)
-        k1 = m1 * v["omega"] ** 2
+        k1, contact = m1 * v["omega"] ** 2, {"e": e, "gamma": gamma, "bonded": bonded, **added}
         return construct_or_explain(
             {"m1": m1, **v},
             lambda: cls(
@@ -243,10 +242,7 @@ class Structure(StructureText, Described):
                 k2=v["kappa"] * k1,
                 d1=damping_from_ratio(v.get("D1", v["D"]), v["omega"], m1),
                 d2=damping_from_ratio(v.get("D2", v["D"]), v["omega"], m1) * v["mu"],
-                e=e,
-                gamma=gamma,
-                bonded=bonded,
-                **added,
+                **contact,
             ),
         )
 
@@ -296,6 +292,7 @@ class Structure(StructureText, Described):
         v = {name: RATIO_QUANTITIES[name].check(value) for name, value in halves.items()}
         warn_of_ratios_in_per_cent({"zeta1": v["zeta1"], "zeta2": v["zeta2"]})
         m1, m2 = STRUCTURE["m1"].check(m1), STRUCTURE["m2"].check(m2)
+        contact = {"e": e, "gamma": gamma, "bonded": bonded, **added}
         return construct_or_explain(
             {"m1": m1, "m2": m2, **v},
             lambda: cls(
@@ -305,10 +302,7 @@ class Structure(StructureText, Described):
                 k2=stiffness_from_frequency(v["f2"], m2),
                 d1=damping_from_ratio(v["zeta1"], 2.0 * math.pi * v["f1"], m1),
                 d2=damping_from_ratio(v["zeta2"], 2.0 * math.pi * v["f2"], m2),
-                e=e,
-                gamma=gamma,
-                bonded=bonded,
-                **added,
+                **contact,
             ),
         )
 
@@ -371,20 +365,13 @@ class Structure(StructureText, Described):
         heavy, light = h1 / (h1 + h2), h2 / (h1 + h2)
         stiff, soft = heavy**3 / (heavy**3 + light**3), light**3 / (heavy**3 + light**3)
         k, d = stiffness_from_frequency(f, mass), damping_from_ratio(zeta, 2.0 * math.pi * f, mass)
+        halves = {
+            **{"m1": heavy * mass, "k1": stiff * k, "d1": stiff * d},
+            **{"m2": light * mass, "k2": soft * k, "d2": soft * d},
+        }
         return construct_or_explain(
             {"mass": mass, "f": f, "zeta": zeta},
-            lambda: cls(
-                m1=heavy * mass,
-                m2=light * mass,
-                k1=stiff * k,
-                k2=soft * k,
-                d1=stiff * d,
-                d2=soft * d,
-                e=e,
-                gamma=gamma,
-                bonded=bonded,
-                **added,
-            ),
+            lambda: cls(**halves, e=e, gamma=gamma, bonded=bonded, **added),
         )
 
     @classmethod
@@ -447,30 +434,22 @@ class Structure(StructureText, Described):
             if name in OF_MASS_2 and wall is True:
                 dataclasses.replace(self, wall=True, bonded=False).require_mass_2(name)
             if name not in known:
-                raise InputError(
-                    f"{name}: no parameter of a structure; {expected_one_of(name, known)}"
-                )
+                text = f"{name}: no parameter of a structure"
+                raise InputError(f"{text}; {expected_one_of(name, known)}")
             for alternative in ALTERNATIVES.get(name, ()):
                 if alternative in changes:
                     raise InputError(f"{name} and {alternative}: expected one of them")
-        ratios = {
-            name: RATIO_QUANTITIES[name].check(changes.pop(name))
-            for name in RATIO_PARAMETERS
-            if name in changes
-        }
-        halves = {
-            name: RATIO_QUANTITIES[name].check(changes.pop(name))
-            for name in MODAL_PARAMETERS
-            if name in changes
-        }
+        ratios, halves = (
+            {n: RATIO_QUANTITIES[n].check(changes.pop(n)) for n in names if n in changes}
+            for names in (RATIO_PARAMETERS, MODAL_PARAMETERS)
+        )
         fixed = dataclasses.replace(self, **changes)
         if ratios:
             with_mass_2 = dataclasses.replace(fixed, wall=False)  # whose ratios are numbers
-            new = {k: v for k, v in with_mass_2._si_from_ratios(ratios).items() if k not in changes}
+            new = {**with_mass_2._si_from_ratios(ratios), **changes}
             fixed = construct_or_explain(ratios, lambda: dataclasses.replace(fixed, **new))
         if halves:
-            by_halves = fixed._si_from_halves(halves)
-            new = {k: v for k, v in by_halves.items() if k not in changes}
+            new = {**fixed._si_from_halves(halves), **changes}
             fixed = construct_or_explain(halves, lambda: dataclasses.replace(fixed, **new))
         return fixed
 

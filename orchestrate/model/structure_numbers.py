@@ -22,12 +22,11 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-SI = tuple(STRUCTURE)
 RATIO_PARAMETERS = ("mu", "kappa", "D", "D1", "D2", "omega")
 MODAL_PARAMETERS = ("f1", "f2", "zeta1", "zeta2")
 OF_MASS_2 = ("m2", "k2", "d2", "mu", "kappa", "D2", "f2", "zeta2")
 FLAGS = ("bonded", "wall")
-PARAMETERS = (*SI, *RATIO_PARAMETERS, *MODAL_PARAMETERS)
+PARAMETERS = (*STRUCTURE, *RATIO_PARAMETERS, *MODAL_PARAMETERS)
 Values = TypeVar("Values", float, "NDArray[np.float64]")
 
 
@@ -181,9 +180,8 @@ class StructureNumbers:
             Where there is none of that name; for ``D`` too where D1 and D2 differ.
         """
         if name not in PARAMETERS:
-            raise InputError(
-                f"{name}: no parameter of a structure; {expected_one_of(name, PARAMETERS)}"
-            )
+            text = f"{name}: no parameter of a structure"
+            raise InputError(f"{text}; {expected_one_of(name, PARAMETERS)}")
         if name in OF_MASS_2:
             self.require_mass_2(name)
         if name != "D":
@@ -208,18 +206,16 @@ class StructureNumbers:
     def _si_from_ratios(self, ratios: dict[str, float]) -> dict[str, Any]:
         """Return the SI values that change if ratios of the paper (mu, kappa, D, omega) are set."""
         both = {"D1": ratios["D"], "D2": ratios["D"]} if "D" in ratios else {}
-        all_ratios = {**ratios, **both}
-        omega, mu = all_ratios.get("omega", self.omega), all_ratios.get("mu", self.mu)
-        k1 = self.m1 * omega**2 if "omega" in all_ratios else self.k1
-        new = {}
-        if "omega" in all_ratios:
-            new["k1"] = k1
-        if "mu" in all_ratios:
-            new["m2"] = mu * self.m1
-        if all_ratios.keys() & {"kappa", "omega"}:
-            new["k2"] = all_ratios.get("kappa", self.kappa) * k1
-        if all_ratios.keys() & {"D1", "omega"}:
-            new["d1"] = damping_from_ratio(all_ratios.get("D1", self.D1), omega, self.m1)
-        if all_ratios.keys() & {"D2", "mu", "omega"}:
-            new["d2"] = damping_from_ratio(all_ratios.get("D2", self.D2), omega, self.m1) * mu
-        return new
+        given = {**ratios, **both}
+        omega, mu, kappa, D1, D2 = (
+            given.get(name, getattr(self, name)) for name in ("omega", "mu", "kappa", "D1", "D2")
+        )
+        k1 = self.m1 * omega**2 if "omega" in given else self.k1
+        changed = {  # by what changes it
+            ("omega",): {"k1": k1},
+            ("mu",): {"m2": mu * self.m1},
+            ("kappa", "omega"): {"k2": kappa * k1},
+            ("D1", "omega"): {"d1": damping_from_ratio(D1, omega, self.m1)},
+            ("D2", "mu", "omega"): {"d2": damping_from_ratio(D2, omega, self.m1) * mu},
+        }
+        return {k: v for by, new in changed.items() if given.keys() & by for k, v in new.items()}

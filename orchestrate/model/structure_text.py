@@ -32,27 +32,22 @@ class StructureText(StructureNumbers):
 
     def _texts_by_quantity(self) -> dict[str, str]:
         """Return texts of the halves' masses, frequencies and damping, of e, and of what is set."""
-        halves = {
-            "masses": ("m", " kg"),
-            "natural frequencies": ("f", " Hz"),
-            "damping": ("zeta", " %"),
-        }
+        halves = (
+            *(("masses", "m", 1.0, "kg"), ("natural frequencies", "f", 1.0, "Hz")),
+            ("damping", "zeta", 100.0, "%"),
+        )
         texts = {}
-        for words, (letter, unit) in halves.items():
-            scale = 100.0 if letter == "zeta" else 1.0
-            pair = [
-                f"{scale * float(getattr(self, f'{letter}{half}')):.4g}" for half in self.halves
-            ]
-            texts[words] = " and ".join(pair) + unit
+        for words, letter, scale, unit in halves:
+            pair = (scale * self.get(f"{letter}{half}") for half in self.halves)
+            texts[words] = f"{' and '.join(f'{value:.4g}' for value in pair)} {unit}"
         texts["e"] = f"{self.e:g}"
         added = {name: getattr(self, name) for name in ADDED if getattr(self, name)}
         return texts | {name: f"{value:g} {STRUCTURE[name].unit}" for name, value in added.items()}
 
     def __str__(self) -> str:
         """Return the structure in a line, frequencies in Hz and damping ratios in per cent."""
-        return f"{self.kind}: " + ", ".join(
-            f"{name} {text}" for name, text in self._texts_by_quantity().items()
-        )
+        texts = (f"{name} {text}" for name, text in self._texts_by_quantity().items())
+        return f"{self.kind}: {', '.join(texts)}"
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
         """Print the line of ``str`` in IPython."""

@@ -80,10 +80,8 @@ def resolve_path(source: str | PathLike[str]) -> Path:
     path = Path(source)
     if not path.is_file():
         what = "a folder" if path.is_dir() else "no such file"
-        expected = expected_one_of(str(source), known).replace(
-            "expected", "expected a TOML file or"
-        )
-        raise InputError(f"{source}: {what}; {expected}")
+        text = expected_one_of(str(source), known).removeprefix("expected")
+        raise InputError(f"{source}: {what}; expected a TOML file or{text}")
     return path
 
 

@@ -80,9 +80,8 @@ WORDS_OF_VALUES = {"nan": "not found", "True": "yes", "False": "no", "inf": "wit
 
 def replace_symbols_by_words(text: str) -> str:
     """Return a sentence with nan, True, inf and +- replaced by words and signs."""
-    text = re.sub(
-        rf"\b({'|'.join(WORDS_OF_VALUES)})\b", lambda match: WORDS_OF_VALUES[match[0]], text
-    )
+    values = rf"\b({'|'.join(WORDS_OF_VALUES)})\b"
+    text = re.sub(values, lambda match: WORDS_OF_VALUES[match[0]], text)
     for sign, better in SIGNS.items():
         text = text.replace(sign, better)
     return text

@@ -64,9 +64,8 @@ class Datasets:
     def impact_statistics(self, case: str) -> xr.Dataset:
         name, eta = f"steady_{CASES[case].label()}_up", self.size.etas()
         more = {"start": self.up_sweep(case), "transient": 0, "periods": self.size.steady}
-        return self.get_or_compute(
-            name, orchestrate.impact_statistics, CASES[case], eta=eta, **more
-        )
+        ask = orchestrate.impact_statistics
+        return self.get_or_compute(name, ask, CASES[case], eta=eta, **more)
 
     def continued_sweep(self, first: int, count: int | None = None) -> xr.Dataset:
         """Return the elastic up-sweep's responses sampled from n = first on; of all or a few."""
@@ -75,10 +74,8 @@ class Datasets:
             etas = np.sort(np.random.default_rng(500).choice(etas, count, replace=False))
         done = size.transient + size.samples  # the sweep's last n
         more = {"transient": first - 1 - done, "samples": size.samples + 1}
-        start = self.up_sweep("elastic")
-        return self.get_or_compute(
-            f"later_{first}", orchestrate.sweep, ELASTIC, eta=etas, start=start, **more
-        )
+        more |= {"eta": etas, "start": self.up_sweep("elastic")}
+        return self.get_or_compute(f"later_{first}", orchestrate.sweep, ELASTIC, **more)
 
     def settled_responses(self, case: str) -> xr.Dataset:
         """Return each fifth response of the up-sweep from eta = 0.43, run on until it repeats."""
@@ -107,9 +104,8 @@ class Datasets:
     def lyapunov_exponents(self, case: str) -> xr.Dataset:
         name, settled = f"exponent_{CASES[case].label()}", self.settled_responses(case)
         more = {"start": settled, "transient": 0, "periods": self.size.long_run}
-        return self.get_or_compute(
-            name, orchestrate.lyapunov, CASES[case], eta=settled.eta.values, **more
-        )
+        etas = settled.eta.values
+        return self.get_or_compute(name, orchestrate.lyapunov, CASES[case], eta=etas, **more)
 
     def largest_exponents(self, case: str) -> xr.Dataset:
         """Return exponents of longer runs at the two eta of each region where they are largest."""
@@ -117,15 +113,10 @@ class Datasets:
         for region in self.regions(case):
             part = between(self.lyapunov_exponents(case), region.low, region.high).exponent
             etas |= set(part.eta.values[np.argsort(-part.values, kind="stable")[:2]].tolist())
-        name, size = f"largest_{CASES[case].label()}", self.size
-        more = {
-            "start": self.settled_responses(case),
-            "transient": size.part,
-            "periods": 5 * size.part,
-        }
-        return self.get_or_compute(
-            name, orchestrate.lyapunov, CASES[case], eta=sorted(etas), **more
-        )
+        name, start = f"largest_{CASES[case].label()}", self.settled_responses(case)
+        more = {"start": start, "transient": self.size.part, "periods": 5 * self.size.part}
+        more["eta"] = sorted(etas)
+        return self.get_or_compute(name, orchestrate.lyapunov, CASES[case], **more)
 
     # -- exact limits ------------------------------------------------------------------------------
 
@@ -147,11 +138,8 @@ class Datasets:
     def regions(self, case: str) -> list[Region]:
         """Return a case's windows and what lies between that hold more than one frequency."""
         listed = list_regions(lambda orbit, eta: self.window_nearest(case, orbit, eta))
-        return [
-            one
-            for one in listed
-            if between(self.settled_responses(case), *one[:2]).sizes["eta"] > 1
-        ]
+        settled = self.settled_responses(case)
+        return [one for one in listed if between(settled, *one[:2]).sizes["eta"] > 1]
 
     def shares_chaotic_and_neutral(self, case: str, low: float, high: float) -> tuple[float, float]:
         """Return the shares of responses between two frequencies that are chaotic, and neutral."""
@@ -167,9 +155,8 @@ class Datasets:
             etas = np.round(np.arange(*cases.CONTACT_RANGES[case], 0.001), 9)
             name = f"contact_{CASES[case].label()}_gamma{gamma:g}"
             more = {"eta": etas, "transient": 250, "samples": 40}
-            one = self.get_or_compute(
-                name, orchestrate.sweep, CASES[case].replace(gamma=gamma), **more
-            )
+            structure = CASES[case].replace(gamma=gamma)
+            one = self.get_or_compute(name, orchestrate.sweep, structure, **more)
             touching = one.eta.values[one.permanent_contact.values == 1]
             last.append(touching[-1] if len(touching) else np.nan)
         return np.array(last)
@@ -196,9 +183,8 @@ class Datasets:
         middle = (1.0 + structure.mu) / (1.0 + structure.kappa)  # (6) without rates
         parting, share = 0.01 * ((1.0 - structure.e) or 1.0), structure.mu / (1.0 + structure.mu)
         start = middle, middle, -share * parting, (1.0 - share) * parting
-        motion = orchestrate.simulate(
-            structure, eta=0.02, phase=0.5 * np.pi, start=start, periods=1, points=4, **self.running
-        )
+        kick = {"eta": 0.02, "phase": 0.5 * np.pi, "start": start, "periods": 1, "points": 4}
+        motion = orchestrate.simulate(structure, **kick, **self.running)
         quarter = motion.impact_time.values < float(motion.time[1])
         times, sticks = motion.impact_time.values[quarter], motion.sticks.values[quarter] > 0
         times = times[: int(sticks.argmax()) + 1] if sticks.any() else times
@@ -222,9 +208,8 @@ class Datasets:
 
     def count_slow_impacts(self, structure: Structure, eta: float) -> list[float]:
         """Return mu, kappa and the counts of one motion in 2,000 periods from rest."""
-        found = orchestrate.poincare(
-            structure, eta=eta, at="impacts", transient=0, periods=2000, **self.running
-        )
+        asked = {"eta": eta, "at": "impacts", "transient": 0, "periods": 2000, **self.running}
+        found = orchestrate.poincare(structure, **asked)
         closing, mu, kappa = found.impact_velocity.values, structure.mu, structure.kappa
         slow = structure.e * closing < 1e-4 * closing.max(initial=0.0)
         pulled = slow & ((1.0 - kappa / mu) * found.x1.values >= 0.0)  # (18) with D_1 = D_2

@@ -56,10 +56,6 @@ def curves_part(number: str, text: str, method: str, draw: Callable[..., Figure]
     return PicturePart(f"Figure {number}", text, method, *show)
 
 
-def draw_basin_in_paper_symbols(data: Any) -> Figure:
-    return planes.draw_basin(data, "", (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)"))
-
-
 PARTS = {
     "5": curves_part(
         "5",
@@ -141,7 +137,7 @@ PARTS = {
         "attractors.",
         "Each point is a start of the FMU, followed until settled and decided as the random starts "
         "are.",
-        draw_basin_in_paper_symbols,
+        lambda data: planes.draw_basin(data, "", (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)")),
         lambda data: [data.basin()],
         ("basin",),
     ),

@@ -42,8 +42,10 @@ def reproduce(
     make_writable_folder(output)
     data = Datasets(output, resolution, running)
     checked = check_and_write_claims(data) if CLAIMS in parts else {"claims": [], "regions": []}
-    shown = {name: PARTS[name].results(data) for name in parts if name != CLAIMS}
-    pictures = draw_pictures(shown, output)
+    pictures = {}
+    for name in (part for part in parts if part != CLAIMS):
+        figure = PARTS[name].draw(*PARTS[name].results(data))
+        pictures[name] = save(figure, output / picture_file_stem(name), ("png", "pdf"))[0]
     return Reproduction(checked, pictures, write_report(output, pictures, checked, resolution, fmu))
 
 
@@ -59,15 +61,5 @@ def select_parts(names: Sequence[str] | None) -> list[str]:
 def check_and_write_claims(data: Datasets) -> dict[str, Any]:
     checked = {"claims": check_claims(read_claims(), data), "regions": region_table_rows(data)}
     text = json.dumps(checked, indent=1, ensure_ascii=False) + "\n"
-    write_atomically(
-        data.folder / "claims.json", lambda path: path.write_text(text, encoding="utf-8")
-    )
+    write_atomically(data.folder / "claims.json", lambda path: path.write_text(text, "utf-8"))
     return checked
-
-
-def draw_pictures(results: Mapping[str, Sequence[Any]], output: Path) -> dict[str, Path]:
-    paths = {}
-    for name, data in results.items():
-        figure = PARTS[name].draw(*data)
-        paths[name] = save(figure, output / picture_file_stem(name), ("png", "pdf"))[0]
-    return paths

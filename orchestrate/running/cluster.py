@@ -50,9 +50,8 @@ def dask_workers(client: Any) -> Iterator[Workers]:
         if lost and not isinstance(error, (VibroimpactError, KeyboardInterrupt)):
             raise WorkerError(f"the scheduler of the cluster has ended; {RESUMES}") from None
         if type(error).__name__ == "KilledWorker":
-            raise WorkerError(
-                f"workers of the cluster ended without a word (killed, or out of memory); {RESUMES}"
-            ) from None
+            ended = "workers of the cluster ended without a word (killed, or out of memory)"
+            raise WorkerError(f"{ended}; {RESUMES}") from None
         raise
 
 

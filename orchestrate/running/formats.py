@@ -113,9 +113,8 @@ def make_table(data: xr.Dataset) -> pd.DataFrame:
     if data.sizes:
         frame = plain.to_dataframe(dim_order=list(next(iter(data.values())).dims)).reset_index()
     else:
-        frame = pd.DataFrame(
-            {str(n): [array.values.item()] for n, array in plain.variables.items()}
-        )
+        items = {str(name): [array.values.item()] for name, array in plain.variables.items()}
+        frame = pd.DataFrame(items)
     units = {name: array.attrs.get("units", "1") for name, array in data.variables.items()}
     headings = {name: f"{name} [{unit}]" for name, unit in units.items() if unit != "1"}
     return frame.rename(columns=headings)

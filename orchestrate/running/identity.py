@@ -107,14 +107,11 @@ def source_file(module: str) -> Path | None:
 @functools.cache
 def read_digest_and_imports(path: Path, module: str) -> tuple[str, tuple[str, ...]]:
     """Return the digest of a Python file (with its C file) and the module names that it imports."""
-    source = path.read_bytes().replace(b"\r\n", b"\n")
-    c_source = path.with_suffix(".c")  # what the module has compiled
-    content = source + (
-        c_source.read_bytes().replace(b"\r\n", b"\n") if c_source.is_file() else b""
-    )
+    files = path, path.with_suffix(".c")  # what the module has compiled
+    texts = [one.read_bytes().replace(b"\r\n", b"\n") for one in files if one.is_file()]
     package = module if path.name == "__init__.py" else module.rpartition(".")[0]
-    names = tuple(dict.fromkeys(imported_names(source, package)))
-    return hashlib.sha256(content).hexdigest()[:DIGITS], names
+    names = tuple(dict.fromkeys(imported_names(texts[0], package)))
+    return hashlib.sha256(b"".join(texts)).hexdigest()[:DIGITS], names
 
 
 def imported_names(source: bytes, package: str) -> Iterator[str]:

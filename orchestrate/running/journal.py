@@ -163,9 +163,8 @@ def lock_result(path: Path) -> HeldLock:
     try:
         return HeldLock(place)
     except BlockingIOError:
-        raise InputError(
-            f"{path}: another process is computing it; wait for it, or choose another place"
-        ) from None
+        advice = "wait for it, or choose another place"
+        raise InputError(f"{path}: another process is computing it; {advice}") from None
     except OSError as error:
         raise StoreError(
             f"{place}: cannot be made ({error.strerror or error}); expected a writable "

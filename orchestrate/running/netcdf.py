@@ -15,17 +15,13 @@ from .array_blocks import block_indices
 
 MAX_LOADED = 2**28  # bytes of numbers that are read whole; more are read when they are used
 TEXT = 64  # bytes of a text, roughly
-EXPECTED = "expected a NetCDF file that is whole"
 
 
 def read_dataset(path: Path) -> xr.Dataset:
     """Return the dataset of a file, a large one lazily, after all of it was read elsewhere once."""
-    content = read_in_process(
-        *(read_netcdf_content, path, MAX_LOADED),
-        expected=EXPECTED,
-        keep_process=False,
-        array_bytes=MAX_LOADED,
-    )
+    limits: Any = {"keep_process": False, "array_bytes": MAX_LOADED}
+    expected = "expected a NetCDF file that is whole"
+    content = read_in_process(read_netcdf_content, path, MAX_LOADED, expected=expected, **limits)
     if content["is_large"]:
         return xr.open_dataset(path, engine="netcdf4", cache=False)
     variables = {name: (tuple(dims), *rest) for name, (dims, *rest) in content["variables"].items()}

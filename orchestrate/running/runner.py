@@ -142,11 +142,8 @@ class Runner:
         return seconds < MIN_PARALLEL_SECONDS or self.count_usable_workers() < 2
 
     def count_usable_workers(self) -> int:
-        return sum(
-            schedule.estimate_startable_tasks()
-            for schedule in self.schedules.values()
-            if self.make_ready(schedule)
-        )
+        ready = filter(self.make_ready, self.schedules.values())
+        return sum(schedule.estimate_startable_tasks() for schedule in ready)
 
     def make_bar(self) -> Any:
         unit = self.jobs[0].item if len(self.jobs) == 1 else "item"

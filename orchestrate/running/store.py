@@ -117,9 +117,8 @@ class DiskStore(Store):
         check_path_encoding(path)
         make_writable_folder(path.parent)
         if path.is_dir():
-            raise InputError(
-                f"{path}: a folder; expected a place for a file: remove it, or choose another"
-            )
+            expected = "expected a place for a file: remove it, or choose another"
+            raise InputError(f"{path}: a folder; {expected}")
         self._lock = lock_result(path)
         self._journal: Journal | None = None
         try:
@@ -171,15 +170,11 @@ class DiskStore(Store):
         if not reason:
             return
         if not is_same_question(stored, self.identity):
-            raise InputError(
-                f"{path}: contains the result of a different calculation ({reason}); choose "
-                "another place, or force to replace it"
-            )
+            text = f"{path}: contains the result of a different calculation ({reason})"
+            raise InputError(f"{text}; choose another place, or force to replace it")
         if not self.options.keep_stale:
-            raise StaleError(
-                f"{path}: stale ({reason}); force to recompute it, or "
-                "keep stale results as they are"
-            )
+            advice = "force to recompute it, or keep stale results as they are"
+            raise StaleError(f"{path}: stale ({reason}); {advice}")
         log.warning("%s: stale (%s), taken as it is", path, reason)
 
     @property

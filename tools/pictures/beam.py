@@ -32,9 +32,8 @@ def half_outline(opening: float, side: int) -> np.ndarray:
 
 def draw_beam(axes: Axes, opening: float, colour: str) -> None:
     for side in (1, -1) if opening else ():
-        axes.add_patch(
-            Polygon(half_outline(opening, side), facecolor="0.85", edgecolor="k", lw=1.0)
-        )
+        outline = half_outline(opening, side)
+        axes.add_patch(Polygon(outline, facecolor="0.85", edgecolor="k", lw=1.0))
     if not opening:
         corner, size = (0.0, -THICKNESS), (LENGTH, 2.0 * THICKNESS)
         axes.add_patch(Rectangle(corner, *size, facecolor="0.85", edgecolor="k", lw=1.0))

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from orchestrate.show.colours import BLACK, BLUE, RED
@@ -19,14 +18,9 @@ STYLES: dict[str, dict[str, Any]] = {
 }
 
 
-def make_card() -> tuple[Figure, Axes]:
-    figure, (axes,) = make_panels(1, 1, SIZE)
-    return figure, axes
-
-
 @styled
 def draw_resonance(curves: xr.Dataset) -> Figure:
-    figure, axes = make_card()
+    figure, (axes,) = make_panels(1, 1, SIZE)
     for name, style in STYLES.items():
         amplitude = curves.x1_max.sel(structure=name, direction="up")
         axes.plot(curves.hertz, 1e3 * amplitude, linewidth=1.8, label=name, **style)
@@ -37,7 +31,7 @@ def draw_resonance(curves: xr.Dataset) -> Figure:
 
 @styled
 def draw_orbit_diagram(diagram: xr.Dataset) -> Figure:
-    figure, axes = make_card()
+    figure, (axes,) = make_panels(1, 1, SIZE)
     eta = np.repeat(diagram.eta.values, diagram.sizes["sample"])
     dots: Any = {"color": BLACK, "markersize": 1.2, "alpha": 0.35, "markeredgewidth": 0.0}
     axes.plot(eta, diagram.xi_rel.values.ravel(), ".", **dots)

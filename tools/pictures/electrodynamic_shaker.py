@@ -41,13 +41,12 @@ def draw_shaker(width: float = 4.2) -> Figure:
 
 
 @styled
-def draw_limited_run(times: np.ndarray, values: dict[str, np.ndarray]) -> Figure:
+def draw_limited_run(values: dict[str, np.ndarray]) -> Figure:
     """Draw voltage, current and position over time, shaded where a limit acts."""
     figure, panels = make_panels(3, 1, (9, 6), sharex=True)
-    rows = (("voltage", "$u$ in V", 1.0), ("current", "$i$ in A", 1.0))
-    for axes, (name, label, scale) in zip(
-        panels, (*rows, ("box_position", "$y$ in mm", 1e3)), strict=True
-    ):
+    electric = ("voltage", "$u$ in V", 1.0), ("current", "$i$ in A", 1.0)
+    rows, times = (*electric, ("box_position", "$y$ in mm", 1e3)), values["times"]
+    for axes, (name, label, scale) in zip(panels, rows, strict=True):
         axes.plot(times, scale * values[name], "k", lw=0.9)
         low, high = axes.get_ylim()
         axes.fill_between(times, low, high, where=values["limited"] > 0.0, color="0.88", lw=0)

@@ -9,10 +9,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import orchestrate
+from orchestrate.constants import GRAVITY
 from orchestrate.show.colours import BLACK, RED
 from orchestrate.show.style import make_panels, styled
 
-GRAVITY = 9.80665
 LEVEL = 0.5 * GRAVITY
 HALVES = {"m1": 0.10, "m2": 0.08, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.007, "e": 0.6}
 

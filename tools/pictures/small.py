@@ -22,7 +22,4 @@ def write_png_with_few_colours(png: bytes, path: Path) -> None:
     with Image.open(io.BytesIO(png)) as picture:
         few = picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
 
-    def write(place: Path) -> None:
-        few.save(place, format="png", optimize=True)
-
-    write_atomically(path, write)
+    write_atomically(path, lambda place: few.save(place, format="png", optimize=True))

@@ -80,9 +80,8 @@ def draw_bounding_steps(axes: Axes) -> None:
     now = 0.0
     for step in range(STEPS):
         largest = sum(a * k**2 for a, k, _ in WAVES)
-        bound = Polynomial(
-            [float(gap_derivative(now, 0)), float(gap_derivative(now, 1)), -0.5 * largest]
-        )
+        gap, rate = (float(gap_derivative(now, order)) for order in (0, 1))
+        bound = Polynomial([gap, rate, -0.5 * largest])
         length = float(max(bound.roots().real))  # it falls from a value above 0: one root ahead
         along = np.linspace(0.0, length, 100)
         label = "bounds" if step == 0 else None

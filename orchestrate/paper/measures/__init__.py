@@ -15,9 +15,7 @@ MODULES = (setup, equations, limits, windows, influence, peaks)
 
 def find_measure(name: str) -> Measure:
     """Return the measure of a name; raise KeyError where there is none."""
-    found = {key: value for module in MODULES for key, value in vars(module).items()}
-    measure: Measure = found[name]
-    return measure
+    return {key: value for module in MODULES for key, value in vars(module).items()}[name]
 
 
 def check_claims(claims: Iterable[Claim], data: Datasets) -> list[dict[str, str]]:
@@ -26,10 +24,7 @@ def check_claims(claims: Iterable[Claim], data: Datasets) -> list[dict[str, str]
     for claim in claims:
         measured = find_measure(claim.measure)(data, claim, **claim.parse_arguments())
         verdict = judge(measured.parts, data.size.has_full_transients or not claim.full)
-        names = ("section", "text", "printed", "how", "tolerance")
-        row = {
-            **{name: getattr(claim, name) for name in names},
-            "found": replace_symbols_by_words(measured.text),
-        }
-        rows.append({**row, "verdict": verdict, "why": claim.why * (verdict in (NO, PARTLY))})
+        row = {n: getattr(claim, n) for n in ("section", "text", "printed", "how", "tolerance")}
+        row |= {"found": replace_symbols_by_words(measured.text), "verdict": verdict}
+        rows.append({**row, "why": claim.why * (verdict in (NO, PARTLY))})
     return rows

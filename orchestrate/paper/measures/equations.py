@@ -61,11 +61,8 @@ def compare_printed_displacement_scale(data: Datasets, claim: Claim) -> Measured
 
 def compare_free_motions(data: Datasets, claim: Claim) -> Measured:
     """Put (10) with kappa_i, and with nu_i of (11), into (6)."""
-    nu = math.sqrt(STIFFNESS - D * D)
-    printed, right = (
-        largest_residual_of_6(motion_by_10_and_11(STIFFNESS, D)),
-        largest_residual_of_6(motion_by_10_and_11(nu, D)),
-    )
+    frequencies = STIFFNESS, math.sqrt(STIFFNESS - D * D)
+    printed, right = (largest_residual_of_6(motion_by_10_and_11(one, D)) for one in frequencies)
     return judge_printed_form("left of (6)", printed, right, "nu_i for kappa_i (and D_i for D)")
 
 

@@ -13,9 +13,8 @@ from ..datasets import Datasets
 
 def check_impacts_decrease(data: Datasets, claim: Claim) -> Measured:
     """Count the impacts of T-periodic responses from 0.43 to 0.9."""
-    steps = reading.successive_impact_numbers(
-        reading.between(data.up_sweep("elastic"), 0.43, 0.9)
-    ) or [0]
+    part = reading.between(data.up_sweep("elastic"), 0.43, 0.9)
+    steps = reading.successive_impact_numbers(part) or [0]
     text = f"T-periodic with {', '.join(map(str, steps))} impacts in turn"
     return Measured(text, [steps[0] > steps[-1], reading.strictly_decreases(steps)])
 
@@ -61,10 +60,8 @@ def measure_share_nearly_2t_periodic(data: Datasets, claim: Claim) -> Measured:
 def count_coexisting_attractors(data: Datasets, claim: Claim) -> Measured:
     """Count frequencies from 1.07 to 1.37 with several attractors, and where sweeps differ."""
     found = reading.between(data.attractors(), 1.07, 1.37)
-    up, down = (
-        reading.between(one, 1.0701, 1.3699)
-        for one in (data.up_sweep("elastic"), data.down_sweep("elastic"))
-    )
+    sweeps = data.up_sweep("elastic"), data.down_sweep("elastic")
+    up, down = (reading.between(one, 1.0701, 1.3699) for one in sweeps)
     several = found.eta.values[found.number.values > 1]
     periodic = int(((found.multiplicity.values > 0).sum(axis=1) > 1).sum())
     differ = int((reading.impacts_in_response(up) != reading.impacts_in_response(down)).sum())
@@ -72,10 +69,8 @@ def count_coexisting_attractors(data: Datasets, claim: Claim) -> Measured:
         f"two or more attractors at {len(several)} of {found.sizes['eta']} frequencies, two "
         f"periodic at {periodic}; up and down differ at {differ}"
     )
-    low, high = (
-        data.window_nearest("elastic", "T/1", 2.0).low,
-        data.window_nearest("elastic", "2T/3", 1.36).high,
-    )
+    low = data.window_nearest("elastic", "T/1", 2.0).low
+    high = data.window_nearest("elastic", "2T/3", 1.36).high
     text += f"; by exact limits T and 2T with three impacts coexist from {low:.5f} to {high:.5f}"
     if len(several):
         groups = np.split(several, np.flatnonzero(np.diff(several) > 0.006) + 1)
@@ -170,10 +165,8 @@ def measure_decay_between_peaks(data: Datasets, claim: Claim) -> Measured:
     text = "; ".join(f"{eta:.3f}: {gap:.3g}, {velocity:.3g}" for eta, (gap, velocity) in listed)
     factors = np.divide(rows[:-1], rows[1:])
     by = "; ".join(f"{a:.3g}, {b:.3g}" for a, b in factors)
-    return Measured(
-        f"eta: largest gap, closing velocity: {text}; they fall by {by}",
-        (factors >= 10.0).ravel().tolist(),
-    )
+    text = f"eta: largest gap, closing velocity: {text}; they fall by {by}"
+    return Measured(text, (factors >= 10.0).ravel().tolist())
 
 
 def compare_with_single_oscillator(data: Datasets, claim: Claim) -> Measured:
@@ -190,11 +183,8 @@ def compare_with_single_oscillator(data: Datasets, claim: Claim) -> Measured:
         text.append(f"{eta:g}: {ratios[0]:.3f}, {ratios[1]:.3f}, gap {gap:.2f}")
     near = [part < 0.1 for part in away[1:]]  # beyond the main peak
     falls = all(a > b for a, b in zip(away[1:], away[2:], strict=False))
-    return Measured(
-        "amplitudes of both masses over that of both as one (6), and gap over amplitude: "
-        f"{'; '.join(text)}",
-        [*near, falls],
-    )
+    what = "amplitudes of both masses over that of both as one (6), and gap over amplitude"
+    return Measured(f"{what}: {'; '.join(text)}", [*near, falls])
 
 
 def region_table_rows(data: Datasets) -> list[dict[str, str]]:
@@ -204,29 +194,25 @@ def region_table_rows(data: Datasets) -> list[dict[str, str]]:
         for region in data.regions(case):
             chaotic, neutral = data.shares_chaotic_and_neutral(case, region.low, region.high)
             kinds = {"chaotic in part": chaotic, "neutral in part": neutral, "periodic": 1.0}
-            rows.append(
-                {
-                    "case": f"e = {structure.e:g}, D = {structure.get('D'):g}",
-                    "region": f"{region.low:.5f} to {region.high:.5f} ({region.name})",
-                    "chaotic": f"{100 * chaotic:.0f} %",
-                    "neutral": f"{100 * neutral:.0f} %",
-                    "count": str(
-                        reading.between(data.settled_responses(case), *region[:2]).sizes["eta"]
-                    ),
-                    "largest": largest_exponent_text(data, case, region),
-                    "verdict": next(word for word, share in kinds.items() if share > 0.01),
-                }
-            )
+            settled = reading.between(data.settled_responses(case), *region[:2])
+            row = {
+                "case": f"e = {structure.e:g}, D = {structure.get('D'):g}",
+                "region": f"{region.low:.5f} to {region.high:.5f} ({region.name})",
+                "chaotic": f"{100 * chaotic:.0f} %",
+                "neutral": f"{100 * neutral:.0f} %",
+                "count": str(settled.sizes["eta"]),
+                "largest": largest_exponent_text(data, case, region),
+                "verdict": next(word for word, share in kinds.items() if share > 0.01),
+            }
+            rows.append(row)
     return rows
 
 
 def largest_exponent_text(data: Datasets, case: str, region: reading.Region) -> str:
     """Return a region's largest exponent with its error and place, from long runs."""
     # an exponent of which less than half is left there is named: its chaos has ended
-    part, first = (
-        reading.between(one, *region[:2])
-        for one in (data.largest_exponents(case), data.lyapunov_exponents(case))
-    )
+    exponents = data.largest_exponents(case), data.lyapunov_exponents(case)
+    part, first = (reading.between(one, *region[:2]) for one in exponents)
     best = part.isel(eta=int(part.exponent.values.argmax()))
     text = f"{float(best.exponent):.4f} ± {float(best.standard_error):.4f} at {float(best.eta):.3f}"
     for one in (part.isel(eta=k) for k in range(part.sizes["eta"])):

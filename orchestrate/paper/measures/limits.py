@@ -31,14 +31,10 @@ def find_limit(
     # orbit: "contact", "T" of any impacts, or mT/k; around `inside`, or the longest run where that
     # is 0. exact: the orbit, around `near`, that decides where it is another one; "upper:" before
     # it asks for its other end
-    swept, back = (
-        edges_of_orbit(one, orbit, inside) for one in (data.up_sweep(case), data.down_sweep(case))
-    )
-    which, printed, slack = (
-        int(edge == "upper"),
-        float(claim.printed),
-        slack or claim.rounding_tolerance,
-    )
+    sweeps = data.up_sweep(case), data.down_sweep(case)
+    swept, back = (edges_of_orbit(one, orbit, inside) for one in sweeps)
+    which, printed = int(edge == "upper"), float(claim.printed)
+    slack = slack or claim.rounding_tolerance
     end, _, decides = exact.rpartition(":")
     decides = decides or ("T, contact" if orbit == "contact" else orbit)
     window = data.window_nearest(case, decides, near or inside or 3.0)
@@ -63,9 +59,9 @@ def edges_of_orbit(sweep: xr.Dataset, orbit: str, inside: float) -> tuple[Edges,
         flags = sweep.permanent_contact.values == 1
     else:
         flags = sweep.multiplicity.values == 1 if orbit == "T" else is_on_orbit(sweep, orbit)
-    return (
-        edges_of_run_around(sweep, flags, inside) if inside else edges_of_longest_run(sweep, flags)
-    )
+    if inside:
+        return edges_of_run_around(sweep, flags, inside)
+    return edges_of_longest_run(sweep, flags)
 
 
 def find_peak_height(data: Datasets, claim: Claim, case: str, digits: float) -> Measured:
@@ -80,8 +76,7 @@ def find_peak_frequency(data: Datasets, claim: Claim, case: str) -> Measured:
     place, there = float(gaps.idxmax()), gaps.sel(eta=float(claim.printed), method="nearest")
     text, rounds = f"{place:.3f}", claim.is_rounded_to_printed(place)
     if not rounds:
+        less = 100 * (1 - float(there / gaps.max()))
         text += f", down {float(data.down_sweep(case).xi_rel_max.idxmax()):.3f}"
-        text += (
-            f"; at {claim.printed} the gap is {100 * (1 - float(there / gaps.max())):.4f} % less"
-        )
+        text += f"; at {claim.printed} the gap is {less:.4f} % less"
     return Measured(text, [rounds])

@@ -65,10 +65,8 @@ def count_impacts_at_peaks(data: Datasets, claim: Claim) -> Measured:
     counts = [float(row.impacts) for row in rows]
     periods = [int(data.up_sweep(case).multiplicity.sel(eta=etas[case])) for case in etas]
     listed = list(zip(counts, periods, strict=True))
-    return Measured(
-        ", ".join(f"{count:.0f} in T, {n if n > 1 else ''}T-periodic" for count, n in listed),
-        [abs(count - 2.0) < 0.02 and n == 1 for count, n in listed],
-    )
+    texts = (f"{count:.0f} in T, {n if n > 1 else ''}T-periodic" for count, n in listed)
+    return Measured(", ".join(texts), [abs(count - 2.0) < 0.02 and n == 1 for count, n in listed])
 
 
 def compare_damped_with_elastic(data: Datasets, claim: Claim) -> Measured:

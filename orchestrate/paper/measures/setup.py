@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -31,27 +33,20 @@ def find_folds_of_the_drive(data: Datasets, claim: Claim) -> Measured:
     structure, drive = Structure.from_file(BEAM), Drive.from_file(BEAM)
     folds, volts = averaged.folds(structure, drive), drive.motor_constant * structure.omega
     text = "; ".join(f"fold at {one.Omega:.4f} omega, {one.eta0 * volts:.3f} V" for one in folds)
+    text = text or "no fold: the speed does not jump"
     resonance = averaged.bonded_resonance(structure, drive)
-    return Measured(
-        f"resonance at {resonance:.4f} omega; {text or 'no fold: the speed does not jump'}",
-        [len(folds) > 1],
-    )
-
-
-def linear_unbalance_amplitude(parameters: np.ndarray, speed: np.ndarray) -> np.ndarray:
-    """Return a linear oscillator's amplitudes at speeds of an unbalance that shakes it."""
-    size, resonance, damping = parameters
-    ratio = speed / resonance
-    curve: np.ndarray = size * ratio**2 / np.hypot(1.0 - ratio**2, 2.0 * damping * ratio)
-    return curve
+    return Measured(f"resonance at {resonance:.4f} omega; {text}", [len(folds) > 1])
 
 
 def fit_linear_curve(speed: np.ndarray, amplitude: np.ndarray) -> tuple[np.ndarray, float]:
-    """Fit a linear oscillator's curve; return its parameters and the largest relative error."""
+    """Fit a linear oscillator shaken by an unbalance; return parameters, largest relative error."""
     from scipy.optimize import least_squares
 
-    def relative_errors(parameters: np.ndarray) -> np.ndarray:
-        return linear_unbalance_amplitude(parameters, speed) / amplitude - 1.0
+    def relative_errors(parameters: np.ndarray) -> Any:
+        size, resonance, damping = parameters
+        ratio = speed / resonance
+        curve = size * ratio**2 / np.hypot(1.0 - ratio**2, 2.0 * damping * ratio)
+        return curve / amplitude - 1.0
 
     begin = np.array([0.02 * amplitude.max(), speed[amplitude.argmax()], 0.01])
     fit = least_squares(relative_errors, begin, x_scale=np.abs(begin))
@@ -88,16 +83,14 @@ def count_impacts_up_to_the_peak(data: Datasets, claim: Claim) -> Measured:
     up = data.up_sweep("elastic")
     steps = successive_impact_numbers(between(up, 0.43, float(up.xi_rel_max.idxmax()))) or [0]
     after = data.window_nearest("elastic", "T/1", 1.065).high
-    irregular = (
-        (between(data.settled_responses("elastic"), after, 1.3).multiplicity == 0).mean().item()
-    )
+    settled = between(data.settled_responses("elastic"), after, 1.3)
+    irregular = (settled.multiplicity == 0).mean().item()
     text = (
         f"the model of section 3 on the way up: {', '.join(map(str, steps))} impacts in turn, "
         f"{steps[-1]} at the peak; after it {100 * irregular:.0f} % of the responses are irregular"
     )
-    return Measured(
-        text, [strictly_decreases(steps), steps[-1] == 2, irregular > 0.0, irregular == 1.0]
-    )
+    falls = strictly_decreases(steps)
+    return Measured(text, [falls, steps[-1] == 2, irregular > 0.0, irregular == 1.0])
 
 
 def compare_spectral_lines(data: Datasets, claim: Claim) -> Measured:

@@ -195,20 +195,16 @@ def count_impacts_at_relative_peaks(data: Datasets, claim: Claim) -> Measured:
 
 def measure_share_with_one_impact(data: Datasets, claim: Claim) -> Measured:
     """Measure the share of periodic responses above 1.37 that have one impact in their period."""
-    settled, up = (
-        reading.between(one, 1.37, 8.0)
-        for one in (data.settled_responses("elastic"), data.up_sweep("elastic"))
-    )
-    repeats = [part.multiplicity.values > 0 for part in (settled, up)]
-    one, swept = (
-        float(np.mean(reading.impacts_in_response(part)[flags] == 1)) if flags.any() else np.nan
-        for part, flags in zip((settled, up), repeats, strict=True)
-    )
+    shares = []
+    for responses in (data.settled_responses("elastic"), data.up_sweep("elastic")):
+        part = reading.between(responses, 1.37, 8.0)
+        ones = reading.impacts_in_response(part)[part.multiplicity.values > 0] == 1
+        shares.append(float(np.mean(ones)) if len(ones) else np.nan)
     text = (
-        f"{100 * one:.1f} % of the periodic responses above 1.37 run on until they repeat, "
-        f"{100 * swept:.1f} % of those after 500 periods"
+        f"{100 * shares[0]:.1f} % of the periodic responses above 1.37 run on until they repeat, "
+        f"{100 * shares[1]:.1f} % of those after 500 periods"
     )
-    return Measured(text, [one == 1.0, one > 0.5])
+    return Measured(text, [shares[0] == 1.0, shares[0] > 0.5])
 
 
 def measure_times_between_impacts(data: Datasets, claim: Claim) -> Measured:
@@ -225,10 +221,8 @@ def measure_times_between_impacts(data: Datasets, claim: Claim) -> Measured:
 
 def find_relative_peaks(data: Datasets, claim: Claim) -> Measured:
     """Find the relative peaks of the four windows; each is near 2n times the main one."""
-    etas, main = (
-        data.figure_curves("7").eta.values,
-        float(data.up_sweep("elastic").xi_rel_max.idxmax()),
-    )
+    etas = data.figure_curves("7").eta.values
+    main = float(data.up_sweep("elastic").xi_rel_max.idxmax())
     text = ", ".join(f"{n}T: {eta:.3f}" for n, eta in enumerate(etas, 1))
     parts = [abs(eta / (2 * n * main) - 1.0) < 0.03 for n, eta in enumerate(etas, 1)]
     return Measured(text, [len(etas) == 4, *parts])
@@ -260,17 +254,11 @@ def find_alternating_windows(
     """Find windows nT with one impact and irregular responses between them, as in section 3."""
     steady, part = reading.between(data.impact_statistics(case), low, high), data.up_sweep(case)
     distances = np.array([steady.distance_min.values, steady.distance_max.values])
-    simple, between_them = (
-        bool((np.abs(distances - 1.0) < 0.01).all()),
-        reading.are_windows_separated(part),
-    )
-    ends = "; ".join(
-        f"{n}T {a[1]:.3f} to {b[0]:.3f}" for n, (a, b) in enumerate(reading.window_edges(part), 1)
-    )
-    begin, end = (
-        data.window_nearest(case, "T/1", 2.0).high,
-        data.window_nearest(case, "2T/1", 4.2).low,
-    )
+    simple = bool((np.abs(distances - 1.0) < 0.01).all())
+    between_them, edges = reading.are_windows_separated(part), reading.window_edges(part)
+    ends = "; ".join(f"{n}T {a[1]:.3f} to {b[0]:.3f}" for n, (a, b) in enumerate(edges, 1))
+    begin = data.window_nearest(case, "T/1", 2.0).high
+    end = data.window_nearest(case, "2T/1", 4.2).low
     chaotic, neutral = data.shares_chaotic_and_neutral(case, begin, end)
     text = (
         f"T-periodic with one impact from {low} to {high}: {simple}; windows nT with one impact: "
@@ -293,9 +281,8 @@ def count_differences_of_sweeps(
     data: Datasets, claim: Claim, case: str, low: float, high: float
 ) -> Measured:
     """Count frequencies between two at which up- and down-sweep differ in their impacts."""
-    up, down = (
-        reading.between(one, low, high) for one in (data.up_sweep(case), data.down_sweep(case))
-    )
+    sweeps = data.up_sweep(case), data.down_sweep(case)
+    up, down = (reading.between(one, low, high) for one in sweeps)
     etas = up.eta.values[reading.impacts_in_response(up) != reading.impacts_in_response(down)]
     text = f" from {etas.min():.3f} to {etas.max():.3f}" if len(etas) else ""
     return Measured(f"up and down differ at {len(etas)} frequencies{text}", [len(etas) > 0])
@@ -316,25 +303,19 @@ def find_damping_for_one_impact(data: Datasets, claim: Claim) -> Measured:
 def measure_irregular_share_when_damped(data: Datasets, claim: Claim) -> Measured:
     """Measure what of both irregular regions is left in the damped case."""
     regions = (0.48, 1.37), (2.61, 3.77)
-    first, second = (
-        float(np.mean(reading.between(data.up_sweep("damped"), *ends).multiplicity.values == 0))
-        for ends in regions
-    )
-    text = "; ".join(
-        f"{low}-{high}: {100 * share:.1f} % not periodic"
-        for (low, high), share in zip(regions, (first, second), strict=True)
-    )
-    return Measured(text, [first == 0.0, second > 0.2])
+    shares, texts = [], []
+    for low, high in regions:
+        n = reading.between(data.up_sweep("damped"), low, high).multiplicity.values
+        shares.append(float(np.mean(n == 0)))
+        texts.append(f"{low}-{high}: {100 * shares[-1]:.1f} % not periodic")
+    return Measured("; ".join(texts), [shares[0] == 0.0, shares[1] > 0.2])
 
 
 def compare_contact_ranges(data: Datasets, claim: Claim) -> Measured:
     """Compare the ranges of permanent contact for e = 0.7 and 0.3."""
-    ends = [
-        reading.edges_of_run_around(
-            up := data.up_sweep(case), up.permanent_contact.values == 1, 0.40
-        )[1][0]
-        for case in ("elastic", "plastic")
-    ]
+    sweeps = (data.up_sweep(case) for case in ("elastic", "plastic"))
+    contact = ((up, up.permanent_contact.values == 1) for up in sweeps)
+    ends = [reading.edges_of_run_around(up, flags, 0.40)[1][0] for up, flags in contact]
     text = f"up to {ends[0]:.3f} at e = 0.7, to {ends[1]:.3f} at e = 0.3"
     return Measured(text, [ends[1] > ends[0]])
 
@@ -344,9 +325,8 @@ def compare_windows_over_restitution(data: Datasets, claim: Claim) -> Measured:
     low = {"T, contact": 0.4, "T/2": 1.05}
     texts, moved = [], {}
     for orbit, inside in {**low, "T/1": 2.0, "2T/1": 4.2, "3T/1": 6.3, "4T/1": 8.0}.items():
-        one, two = (
-            data.window_nearest(case, orbit, inside).high for case in ("elastic", "plastic")
-        )
+        both = (data.window_nearest(case, orbit, inside) for case in ("elastic", "plastic"))
+        one, two = (window.high for window in both)
         moved[orbit] = abs(two / one - 1.0)
         texts.append(f"end of {orbit}: {one:.4f}, {two:.4f}")
     lower = np.max([moved[orbit] for orbit in low])
