@@ -156,6 +156,3 @@ def test_attractors_are_true(fmu, seed, budget):
         findings += [f"structure {number}, {structure!r}: {line}" for line in lines]
     assert counts["orbit"] > budget
     expect_none(findings, counts)
-
-
-PAPER = Structure.nondimensional()

@@ -15,9 +15,8 @@ from orchestrate.model import Excitation
 def carried(state, one, other, length=1.0, speed=1.0):
     carry, like = respond_library().carry_state, (c_double * 4)()
     carry.argtypes, carry.restype = [c_void_p] * 3 + [c_double] * 2 + [c_void_p], None
-    carry(
-        (c_double * 4)(*state), traits_for_loops(one), traits_for_loops(other), length, speed, like
-    )
+    traits = traits_for_loops(one), traits_for_loops(other)
+    carry((c_double * 4)(*state), *traits, length, speed, like)
     return np.array(like)
 
 

@@ -18,9 +18,8 @@ QUICK = Structure.from_file("quick"), orchestrate.Drive.from_file("quick")
 
 @pytest.mark.parametrize("value", [True, np.True_, 2.0, "2", None, 0, MAX_COUNT + 1, np.nan])
 def test_what_is_no_integer_of_the_range_is_refused(value):
-    with pytest.raises(
-        InputError, match=f"count = .*: expected a whole number from 1 to {MAX_COUNT}"
-    ):
+    expected = f"expected a whole number from 1 to {MAX_COUNT}"
+    with pytest.raises(InputError, match=f"count = .*: {expected}"):
         checked_integer("count", value, 1)
 
 

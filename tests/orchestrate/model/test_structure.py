@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from orchestrate import model
 from orchestrate.errors import InputError
-from orchestrate.model import Excitation, Structure
-from orchestrate.model.ranges import ADDED, STRUCTURE
+from orchestrate.model import Drive, Excitation, Structure
+from orchestrate.model.ranges import ADDED
 
-from .strategies import DRIVES, EXCITATIONS, NUMBERS, RATIO, SCALE, SMALL, STRUCTURES
+from .strategies import DRIVES, EXCITATIONS, NUMBERS, RATIO, SCALE, SHAKERS, SMALL, STRUCTURES
 
 
 def near(value, expected):
@@ -38,9 +38,9 @@ def test_the_formulas_of_the_paper():
     assert all(map(near, found, omegas))
 
 
-@given(STRUCTURES, EXCITATIONS, DRIVES)
-def test_repr_can_be_evaluated(structure, excitation, drive):
-    assert all(eval(repr(one), vars(model)) == one for one in (structure, excitation, drive))
+@given(st.tuples(STRUCTURES, EXCITATIONS, DRIVES, SHAKERS))
+def test_repr_can_be_evaluated(described):
+    assert all(eval(repr(one), vars(model)) == one for one in described)
 
 
 @given(NUMBERS, st.sampled_from(["mu", "kappa", "D1", "D2"]), SMALL)
@@ -58,16 +58,18 @@ def test_labels_of_different_structures_differ(one, other):
     assert (one.label() == other.label()) == (one == other)
 
 
-@pytest.mark.parametrize("name", STRUCTURE)
-def test_ranges_are_the_fmu_s(name):
-    quantity = STRUCTURE[name]
-    for value in (quantity.minimum, quantity.maximum):
-        assert getattr(Structure(**{name: value}), name) == value
-    below = np.nextafter(quantity.minimum, -math.inf)
-    above = np.nextafter(quantity.maximum, math.inf)
-    for value in (below, above, math.nan, math.inf, -math.inf, 10**400):
+@pytest.mark.parametrize(
+    ("good", "quantity"),
+    [(one, q) for one in (Structure(), Drive.from_file("beam")) for q in one.quantities.values()],
+)
+def test_ranges_are_the_fmu_s(good, quantity):
+    name, minimum, maximum = quantity.name, quantity.minimum, quantity.maximum
+    for value in (minimum, maximum):
+        assert getattr(good.replace(**{name: value}), name) == value
+    below, above = np.nextafter(minimum, -math.inf), np.nextafter(maximum, math.inf)
+    for value in (below, above, math.nan, math.inf, -math.inf, 10**400, "1"):
         with pytest.raises(InputError, match=f"^{name} = .*expected .* <= {name} <= "):
-            Structure(**{name: value})
+            good.replace(**{name: value})
 
 
 @pytest.mark.filterwarnings("ignore:.* of critical damping")
@@ -106,6 +108,7 @@ def test_layers_together_are_the_beam_that_was_measured(mass, f, zeta, h1, h2):
 
 LAYERS = {"mass": 1.0, "f": 10.0}
 WRONG = ((0.0, 1.0), (1.0, -2.0), (1.0,), 3.0, (1.0, math.nan))  # thicknesses
+H = "thicknesses = .*expected two numbers > 0"
 
 
 @pytest.mark.parametrize(
@@ -127,13 +130,7 @@ WRONG = ((0.0, 1.0), (1.0, -2.0), (1.0,), 3.0, (1.0, math.nan))  # thicknesses
         (lambda: Structure.from_halves(m1=1, m2=1, f1=3, f2=4, zeta=0.1), "zeta: .*zeta1"),
         (lambda: Structure.one_mass(f1=42.0), "f1: no parameter here"),
         (lambda: Structure.one_mass(f=3.0, k=50.0), "f1 and k1: expected one of them"),
-        *(
-            (
-                lambda h=h: Structure.from_bonded(**LAYERS, thicknesses=h),
-                "thicknesses = .*expected two numbers > 0",
-            )
-            for h in WRONG
-        ),
+        *((lambda h=h: Structure.from_bonded(**LAYERS, thicknesses=h), H) for h in WRONG),
     ],
 )
 def test_refusals_are_one_line(call, words):

@@ -6,14 +6,15 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from orchestrate.errors import InputError
-from orchestrate.model import SETS, Drive, Excitation, Structure, read, resolve_path, write
+from orchestrate.model import SETS, Drive, Excitation, Shaker, Structure, read, resolve_path, write
 
-from .strategies import DRIVES, STRUCTURES, WITH_FORCES
+from .strategies import DRIVES, SHAKERS, STRUCTURES, WITH_FORCES
+
+KINDS = {Structure: "structure", Excitation: "excitation", Drive: "drive"}
 
 
 @pytest.fixture
 def file(tmp_path):
-
     def put(text):
         path = tmp_path / "mine.toml"
         path.write_text(text, encoding="utf-8")
@@ -23,14 +24,13 @@ def file(tmp_path):
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25)
-@given(STRUCTURES, WITH_FORCES, DRIVES)
-def test_what_is_written_is_read(tmp_path, structure, excitation, drive):
-    path = tmp_path / "all.toml"
-    write(path, structure=structure, excitation=excitation, drive=drive)
-    assert read(path) == {"structure": structure, "excitation": excitation, "drive": drive}
-    assert Structure.from_file(path) == structure
-    assert Excitation.from_file(str(path)) == excitation
-    assert Drive.from_file(path) == drive
+@given(STRUCTURES, WITH_FORCES, DRIVES, SHAKERS)
+def test_what_is_written_is_read(tmp_path, structure, excitation, drive, shaker):
+    every = {"structure": structure, "excitation": excitation, "drive": drive, "shaker": shaker}
+    path = write(tmp_path / "all.toml", **every)
+    assert read(path) == every
+    for kind, name in (*KINDS.items(), (Shaker, "shaker")):
+        assert kind.from_file(str(path)) == every[name]
 
 
 def test_resolve(tmp_path):
@@ -114,9 +114,8 @@ def test_one_mass_before_a_stop(file):
     assert read(file(f"[structure]\n{own}"))["structure"] == stop
     same = Structure.one_mass(m=0.15, f=12.0, zeta="1 %", clearance=3e-4)
     assert stop.wall and (stop.f1, stop.zeta1) == (12.0, 0.01)
-    assert [stop.get(one) for one in ("m1", "k1", "d1", "clearance")] == [
-        same.get(one) for one in ("m1", "k1", "d1", "clearance")
-    ]
+    for name in ("m1", "k1", "d1", "clearance"):
+        assert stop.get(name) == same.get(name)
 
 
 WRONG = [
@@ -171,7 +170,7 @@ def test_mistakes_are_one_line(file, text, words):
     assert "expected" in line
 
 
-@pytest.mark.parametrize("kind", [Structure, Excitation, Drive])
+@pytest.mark.parametrize("kind", KINDS)
 def test_what_is_not_described(file, kind):
     with pytest.raises(InputError, match=r"mine.toml: describes no \w+"):
         kind.from_file(file(""))

@@ -13,12 +13,8 @@ from orchestrate.paper.measures import find_measure
 from orchestrate.paper.resolution import FULL
 
 WINDOWS = {  # exact limits, rounded
-    "T, contact": (0.40, 0.42),
-    "T/2": (0.89, 1.06),
-    "T/1": (1.30, 2.65),
-    "2T/1": (3.60, 4.75),
-    "3T/1": (5.70, 6.84),
-    "4T/1": (7.79, 8.94),
+    **{"T, contact": (0.40, 0.42), "T/2": (0.89, 1.06), "T/1": (1.30, 2.65)},
+    **{"2T/1": (3.60, 4.75), "3T/1": (5.70, 6.84), "4T/1": (7.79, 8.94)},
 }
 
 
@@ -26,9 +22,8 @@ def known(windows=None, **answers):
     """Datasets whose methods answer as told, whatever their arguments, and never compute."""
     data = Datasets(Path("nowhere"), FULL, {})
     limits = {**WINDOWS, **(windows or {})}
-    data.windows_of_branch = lambda case, orbit: [
-        StableWindow(*limits.get(orbit, (1.0, 1.3)), "fold", "fold")
-    ]
+    window = lambda orbit: StableWindow(*limits.get(orbit, (1.0, 1.3)), "fold", "fold")  # noqa: E731
+    data.windows_of_branch = lambda case, orbit: [window(orbit)]
     data.get_or_compute = lambda name, *_, **__: pytest.fail(f"{name}: would be computed")
     for name, answer in answers.items():
         setattr(data, name, answer if callable(answer) else lambda *_, answer=answer: answer)

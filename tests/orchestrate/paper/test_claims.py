@@ -1,13 +1,14 @@
 """The table of claims, the rule of its verdicts, and that numbers which change turn them over."""
 
 import inspect
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from orchestrate.dynamics.lyapunov import CHAOTIC, PERIODIC
-from orchestrate.paper.claims import NO, PARTLY, UNDECIDED, YES, Claim, judge, read_claims
+from orchestrate.paper.claims import NO, PARTLY, UNDECIDED, YES, judge, read_claims
 from orchestrate.paper.curves import CONTACT, FLIGHT
 from orchestrate.paper.measures import find_measure, limits
 
@@ -56,10 +57,7 @@ def test_a_limit_is_read_twice(edges, exact, printed, expected, agrees):
     low, high = edges
     etas = np.array([low - 0.001, low, high, high + 0.001])
     data = known({"T/2": (0.5, exact)}, sweep=responses(etas, [1, 1, 0, 0], 2))
-    claim = next(
-        c for c in read_claims() if c.measure == "find_limit" and "edge=upper" in c.arguments
-    )
-    claim = Claim(**{**vars(claim), "printed": printed})
+    claim = replace(read_claims()[0], printed=printed)
     found, parts = limits.find_limit(data, claim, "elastic", "T/2", "upper", low)
     assert judge(parts) == expected and agrees in found
     assert f"exact: {exact:.8f} (fold of T/2)" in found
@@ -70,11 +68,8 @@ def loops(count, last=0.0):
     rows = []
     for number in range(count):
         rate = 0.7 if number < count - 1 else last
-        rows += [
-            (number + 0.5, 1, 0, FLIGHT),
-            (number + 1, 0, -1, FLIGHT),
-            (number + 1, 0, rate, FLIGHT),
-        ]
+        rows.append((number + 0.5, 1, 0, FLIGHT))
+        rows += [(number + 1, 0, speed, FLIGHT) for speed in (-1, rate)]
     rows[-1] = (count, 0, last, CONTACT)
     rows += [(count + 1, 0, 0, CONTACT), (count + 2, 0.5, 0.5, FLIGHT)]
     tau, gap, rate, kind = np.array(rows, dtype=float).T
@@ -99,25 +94,18 @@ def one_kind(n, impacts):
     curves = loops(3).isel(point=slice(0, -2))
     of = {"panel_of": ("point", np.arange(curves.sizes["point"]) % 3), "eta": ("panel", [1.0, 2.0])}
     same.xi_rel[:] = np.linspace(1.0, 2.0, 201)
-    answers = dict.fromkeys(
-        ("sweep", "settled_responses", "lyapunov_exponents", "largest_exponents"), same
-    )
+    alike = "sweep", "settled_responses", "lyapunov_exponents", "largest_exponents"
+    closing = same[["closing_max", "closing_sum"]]
+    answers = dict.fromkeys(alike, same)
     answers["impact_statistics"] = lambda case: same.assign(
-        {
-            name: same[name] / (1.0 + 9.0 * (case == "plastic"))
-            for name in ("closing_max", "closing_sum")
-        }
+        closing / (1.0 + 9.0 * (case == "plastic"))
     )
     answers["continued_sweep"] = responses(ETAS, 1 - n, impacts)
     alone = along_eta(ETAS, number=np.ones(len(ETAS)))
     answers["attractors"] = alone.assign(multiplicity=alone.number.expand_dims("attractor", 1))
     moved = dict.fromkeys(("T/2", "T/1", "2T/1", "3T/1", "4T/1"), (0.2, 0.3))
-    return known(
-        moved,
-        last_eta_with_contact=np.array([0.4, np.nan]),
-        figure_curves=curves.assign(of),
-        **answers,
-    )
+    answers["last_eta_with_contact"] = np.array([0.4, np.nan])
+    return known(moved, figure_curves=curves.assign(of), **answers)
 
 
 OF_SWEEPS = [
@@ -133,14 +121,9 @@ def test_not_everything_is_borne_out_where_all_responses_are_of_one_kind(row):
     assert {verdict(row, world) for world in (one_kind(1, 5), one_kind(0, 3))} != {YES}
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "compare_printed_displacement_scale",
-        "compare_free_motions",
-        "measure_momentum_gain",
-        "compare_periods",
-    ],
-)
+EQUATIONS = "compare_printed_displacement_scale", "compare_free_motions"
+
+
+@pytest.mark.parametrize("name", [*EQUATIONS, "measure_momentum_gain", "compare_periods"])
 def test_an_equation_holds_as_corrected_only(name):
     assert verdict(name, known()) == NO  # undecided where the corrected form does not hold either

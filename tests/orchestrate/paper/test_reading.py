@@ -37,12 +37,9 @@ def test_windows_and_their_peaks():
     assert window_edges(sweep)[1] == ((1.0, 1.0), (4.0, 5.0))
     assert relative_peak_eta(sweep, 2) == 3.0  # not the higher end
     assert relative_peak_eta(sweep, 1) is None and relative_peak_eta(sweep, 4) is None
-    assert are_windows_separated(sweep_of([1, 0, 2, 3], [1] * 4)) == [True, False, False]
-    assert are_windows_separated(sweep_of([2, 0, 1, 0, 3], [1] * 5)) == [
-        False,
-        True,
-        False,
-    ]  # out of order
+    in_order, out_of_order = sweep_of([1, 0, 2, 3], [1] * 4), sweep_of([2, 0, 1, 0, 3], [1] * 5)
+    assert are_windows_separated(in_order) == [True, False, False]
+    assert are_windows_separated(out_of_order) == [False, True, False]
 
 
 def test_edges():

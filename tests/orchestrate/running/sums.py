@@ -1,11 +1,15 @@
 """Jobs of this test suite: squares of whole numbers, and what starts from others of them."""
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
+from unittest.mock import patch
 
 import numpy as np
+import pytest
 import xarray as xr
 
 from orchestrate.running.job import Job, Table
@@ -100,6 +104,20 @@ class Noise(Squares):
     def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:
         rows = [np.random.default_rng(item).uniform(size=1000) for item in items]
         return {"noise": np.array(rows)}
+
+
+@contextmanager
+def interrupted(kind: type[Job], item: int) -> Iterator[Any]:
+    """A ``with`` block that ends by Ctrl-C when an item of a kind of job is computed."""
+    work = kind.work
+
+    def stop(self: Any, fmus: Any, items: Any, previous: Table | None) -> Table:
+        if item in items:
+            raise KeyboardInterrupt
+        return work(self, fmus, items, previous)
+
+    with patch.object(kind, "work", stop), pytest.raises(KeyboardInterrupt) as ended:
+        yield ended
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from orchestrate.running.runner import compute_dataset
 from tests.faults import FILE_DAMAGE, ROW_DAMAGE, a_shorter_row, rows, too_many_rows
 from tests.sparing import ordinary
 
-from .sums import Squares
+from .sums import Squares, interrupted
 
 SQUARES = [float(i * i) for i in range(30)]
 JOB = Squares("squares", size=30)
@@ -29,27 +29,16 @@ def path(tmp_path) -> Path:
 
 
 @pytest.fixture
-def journal(find, path, monkeypatch) -> Path:
+def journal(find, path) -> Path:
     """Journal of the job, which was interrupted after seven of ten chunks."""
-    work = Squares.work
-
-    def stop(self, fmus, items, previous):
-        if 22 in items:
-            raise KeyboardInterrupt
-        return work(self, fmus, items, previous)
-
-    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt) as ended:
-        patch.setattr(Squares, "work", stop)
+    with interrupted(Squares, 22) as ended:
         compute_dataset(JOB, {"store": path, "jobs": 1}, find)
     assert ended.value.__notes__ == ["what was stored is kept: the same call resumes"]
     return journal_path(path)
 
 
 def numbers(find, path, **running) -> list[float]:
-    values: list[float] = compute_dataset(
-        JOB, {"store": path, **running}, find
-    ).square.values.tolist()
-    return values
+    return list(compute_dataset(JOB, {"store": path, **running}, find).square.values)
 
 
 def right_or_told(path: Path, damaged: Path, find) -> bool:

@@ -80,12 +80,11 @@ def job(direction: str):
     return SweepJob(**asked, **rest, name="sweep", direction=direction)
 
 
-def played(sweep: SweepJob, workers: int, store=None):
+def played(sweep: SweepJob, workers: int):
     """The result, and how many values were guessed in vain."""
+    fmus = {OSCILLATOR: find_or_export(OSCILLATOR)}
     with patch.object(SweepJob, "chunk_size", 10):
-        schedule = ChunkSchedule(
-            sweep, store or Store(), {}, {OSCILLATOR: find_or_export(OSCILLATOR)}
-        )
+        schedule = ChunkSchedule(sweep, Store(), {}, fmus)
         play(schedule, workers, 1)
     return schedule.result.drop_attrs(), schedule.wasted
 

@@ -19,12 +19,8 @@ def package(folder, **sources):
 
 def forget():
     """What is read once in a process is read again."""
-    for function in (
-        identity.read_digest_and_imports,
-        identity.source_file,
-        identity.digests_of_code,
-    ):
-        function.cache_clear()
+    for name in ("read_digest_and_imports", "source_file", "digests_of_code"):
+        getattr(identity, name).cache_clear()
 
 
 @pytest.fixture

@@ -9,23 +9,14 @@ from orchestrate.running.journal import Journal, journal_path, lock_result
 from orchestrate.running.runner import compute_dataset
 
 from .conftest import Find
-from .sums import Squares, Sums
+from .sums import Squares, Sums, interrupted
 
 JOB = Squares("squares")
 SQUARES = np.arange(10.0) ** 2
 
 
-def interrupted(monkeypatch, job, running, find, item):
-    """Ask for a job, with a Ctrl-C when that item is computed."""
-    work = type(job).work
-
-    def stop(self, fmus, items, previous):
-        if item in items:
-            raise KeyboardInterrupt
-        return work(self, fmus, items, previous)
-
-    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr(type(job), "work", stop)
+def ask_until(item, job, running, find):
+    with interrupted(type(job), item):
         compute_dataset(job, {**running, "jobs": 1}, find)
 
 
@@ -45,7 +36,7 @@ def test_an_interrupted_job_goes_on_and_is_read_when_it_is_finished(find, tmp_pa
     whole, broken = tmp_path / "whole.nc", tmp_path / "results" / "sums.nc"
     compute_dataset(Sums("sums", size=20), {"store": whole}, find)
     in_folder = {"store": tmp_path / "results"}  # a place without an ending is a folder
-    interrupted(monkeypatch, Sums("sums", size=20), in_folder, find, 8)
+    ask_until(8, Sums("sums", size=20), in_folder, find)
     assert not broken.exists()
     items = computed(monkeypatch)
     for _ in range(2):
@@ -75,17 +66,16 @@ def test_another_fmu_makes_a_result_stale(find: Find, tmp_path):
 
     with pytest.raises(StaleError, match="made by another FMU"):
         compute_dataset(JOB, {"store": path}, other)
-    assert (
-        compute_dataset(JOB, {"store": path, "keep_stale": True}, other).attrs["fmu_guid"] == "{1}"
-    )
-    assert compute_dataset(JOB, {"store": path, "force": True}, other).attrs["fmu_guid"] == "{2}"
+    for keyword, guid in (("keep_stale", "{1}"), ("force", "{2}")):
+        found = compute_dataset(JOB, {"store": path, keyword: True}, other)
+        assert found.attrs["fmu_guid"] == guid
 
 
 def test_a_result_stays_until_the_one_computed_anew_is_whole(find, tmp_path, monkeypatch):
     path = tmp_path / "squares.nc"
     compute_dataset(JOB, {"store": path}, find)
     before, inode = path.read_bytes(), path.stat().st_ino
-    interrupted(monkeypatch, JOB, {"store": path, "force": True}, find, 7)
+    ask_until(7, JOB, {"store": path, "force": True}, find)
     assert path.read_bytes() == before
     items = computed(monkeypatch)
     compute_dataset(JOB, {"store": path}, find)
@@ -103,7 +93,7 @@ def test_force_never_reads_a_journal_and_an_older_result_stays(
     path = tmp_path / "squares.nc"
     if stored:
         compute_dataset(JOB, {"store": path}, find)
-    interrupted(monkeypatch, JOB, {"store": path, "force": stored}, find, 7)
+    ask_until(7, JOB, {"store": path, "force": stored}, find)
     place = journal_path(path, recomputing=stored)
     if damage == "noise":
         place.write_bytes(b"noise" * 1000)
@@ -114,13 +104,10 @@ def test_force_never_reads_a_journal_and_an_older_result_stays(
         journal.close()
     items = computed(monkeypatch)
     if stored and damage:
-        assert (
-            np.array_equal(compute_dataset(JOB, {"store": path}, find).square, SQUARES)
-            and not items
-        )
-    assert np.array_equal(
-        compute_dataset(JOB, {"store": path, "force": True}, find).square, SQUARES
-    )
+        assert np.array_equal(compute_dataset(JOB, {"store": path}, find).square, SQUARES)
+        assert not items
+    anew = compute_dataset(JOB, {"store": path, "force": True}, find)
+    assert np.array_equal(anew.square, SQUARES)
     assert items == list(range(10))
     assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
 
