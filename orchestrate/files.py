@@ -9,7 +9,7 @@ import shutil
 import stat
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -147,6 +147,18 @@ def creation_lock(path: Path) -> Iterator[None]:
         yield
     finally:
         lock.release()
+
+
+def find_or_make(
+    paths: Sequence[Path], is_usable: Callable[[Path], bool], make: Callable[[], object]
+) -> Path:
+    """Return the first path that is usable; else the first one, made by one process at a time."""
+    if (found := next(filter(is_usable, paths), None)) is not None:
+        return found
+    with creation_lock(paths[0]):
+        if not is_usable(paths[0]):  # another process may just have made it
+            make()
+    return paths[0]
 
 
 def read_text(path: str | os.PathLike[str], max_bytes: int) -> str:

@@ -9,7 +9,7 @@ import ast
 import functools
 import inspect
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import pytest
 
@@ -17,6 +17,7 @@ import orchestrate
 from tests import ROOT
 
 OURS = ("fmu_src", "orchestrate", "tools")
+MODULE = re.compile(rf"({'|'.join(OURS)}|tests)(\.\w+)+")
 FILES = sorted(
     path.relative_to(ROOT).as_posix()
     for name in OURS
@@ -27,18 +28,11 @@ GROUND = {"constants", "errors", "files", "flags", "lazy", "temporary", "units",
 GROUND |= {"model", "reader_child", "reader_process"}
 BELOW_ANSWERS = GROUND | {"fmu", "running"}
 FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know beside itself
-    "constants": set(),
-    "errors": set(),
-    "flags": set(),
-    "lazy": set(),
-    "version": set(),
-    "files": {"errors"},
-    "reader_child": {"errors"},
-    "reader_process": {"errors"},
+    **dict.fromkeys(("constants", "errors", "flags", "lazy", "version"), set()),
+    **dict.fromkeys(("files", "reader_child", "reader_process"), {"errors"}),
     "temporary": {"files"},
     "units": {"constants", "errors"},
-    "model": GROUND - {"model"},
-    "fmu": GROUND,
+    **dict.fromkeys(("model", "fmu"), GROUND),
     "running": GROUND | {"fmu"},
     "response": BELOW_ANSWERS,
     "dynamics": BELOW_ANSWERS | {"response"},
@@ -51,18 +45,17 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     | {"response", "dynamics", "laboratory", "diagnosis", "weak_drive", "show"},
     "explorer": BELOW_ANSWERS | {"response", "dynamics", "laboratory", "weak_drive"},
     "cli": BELOW_ANSWERS
-    | {"__init__", "dynamics", "laboratory", "weak_drive", "diagnosis", "show", "paper"}
-    | {"explorer"},
+    | {"__init__", "dynamics", "laboratory", "weak_drive"}
+    | {"diagnosis", "show", "paper", "explorer"},
     "__main__": {"cli", "errors"},
 }
 PARTS: dict[str, set[str]] = {  # and of fmu_src
-    "kernels.numerics": set(),
+    **dict.fromkeys(("kernels.numerics", "runtime"), set()),
     "kernels.oscillator": {"kernels.numerics"},
     "kernels.motor_shaker": {"kernels.numerics"},
     "kernels.electrodynamic_shaker": {"kernels.numerics"},
     "kernels.deviations": {"kernels.numerics", "kernels.oscillator"},
     "kernels.orbits": {"kernels.numerics", "kernels.oscillator"},
-    "runtime": set(),
     "models": {"kernels.oscillator", "kernels.motor_shaker", "runtime", "version"}
     | {"kernels.electrodynamic_shaker"},
     "export": {"runtime", "kernels.repetition", "kernels.linear_response"}
@@ -90,14 +83,19 @@ def tree_of(file: str) -> ast.Module:
     return ast.parse((ROOT / file).read_text(encoding="utf-8"), file)
 
 
+@functools.cache
+def nodes_of(file: str) -> list[ast.AST]:
+    return list(ast.walk(tree_of(file)))
+
+
 def module_name(file: str) -> str:
     return file.removesuffix("i").removesuffix(".py").removesuffix("/__init__").replace("/", ".")
 
 
-def imports(tree: ast.Module, file: str) -> Iterator[str]:
+def imports(nodes: Iterable[ast.AST], file: str) -> Iterator[str]:
     """Absolute names of all that a file imports, ``?`` where that cannot be read."""
     package = file.split("/")[:-1]
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -106,7 +104,7 @@ def imports(tree: ast.Module, file: str) -> Iterator[str]:
             yield from (f"{stem}.{alias.name}" for alias in node.names)
         elif isinstance(node, ast.Constant):
             name = node.value.partition(":")[0] if isinstance(node.value, str) else ""
-            if re.fullmatch(rf"({'|'.join(OURS)}|tests)(\.\w+)+", name):
+            if MODULE.fullmatch(name):
                 yield name  # as in ``-m orchestrate.cli`` or an entry point
         elif isinstance(node, ast.Call):
             called = getattr(node.func, "attr", getattr(node.func, "id", ""))
@@ -117,7 +115,7 @@ def imports(tree: ast.Module, file: str) -> Iterator[str]:
 
 @functools.cache
 def imports_of(file: str) -> frozenset[str]:
-    return frozenset(imports(tree_of(file), file))
+    return frozenset(imports(nodes_of(file), file))
 
 
 def users(package: str) -> set[str]:
@@ -140,7 +138,7 @@ def test_the_reader_of_imports_sees_all_kinds():
         "def h():\n    import i\n    __import__('j')\n    import_module(f'k.{a}')\n"
         "COMMAND = ['-m', 'orchestrate.cli']\nENTRY = 'orchestrate.cli:main'\n"
     )
-    found = set(imports(ast.parse(text), "orchestrate/show/x.py"))
+    found = set(imports(ast.walk(ast.parse(text)), "orchestrate/show/x.py"))
     expected = {"a.b", "c.d", "orchestrate.e.f", "orchestrate.show.g", "i", "j", "?"}
     assert found == expected | {"orchestrate.cli"}
 
@@ -231,7 +229,7 @@ FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 def test_functions_are_short():
     for file in FILES:
-        for node in filter(lambda node: isinstance(node, FUNCTIONS), ast.walk(tree_of(file))):
+        for node in (node for node in nodes_of(file) if isinstance(node, FUNCTIONS)):
             body = node.body[1:] if ast.get_docstring(node) is not None else node.body
             assert not body or node.end_lineno - body[0].lineno < 45, f"{file}: {node.name}"
 

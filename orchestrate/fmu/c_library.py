@@ -20,7 +20,7 @@ from fmu_src.export.platforms import default_platforms, platform_of_this_machine
 
 from ..errors import InputError, StoreError
 from ..files import (
-    creation_lock,
+    find_or_make,
     forbid_writing_by_others,
     is_written_by_trusted_only,
     make_writable_folder,
@@ -45,12 +45,8 @@ def find_or_compile_library(source: Path, folder: str | PathLike[str] | None = N
     try:
         name = sources.library_name(source, platform)
         paths = [candidate / FORM / name for candidate in folders]
-        if usable := next(filter(is_usable, paths), None):
-            return usable
-        path = paths[0]
-        with creation_lock(path):
-            if not is_usable(path):
-                compile_library(source, platform, folders[0])
+        make = functools.partial(compile_library, source, platform, folders[0])
+        path = find_or_make(paths, is_usable, make)
         if is_trusted(path):
             return path
         raise InputError(f"{path}: {NOT_PRIVATE}")

@@ -15,7 +15,7 @@ from fmu_src.export.errors import CannotExport
 
 from ..errors import InputError, StoreError
 from ..files import (
-    creation_lock,
+    find_or_make,
     forbid_writing_by_others,
     is_written_by_trusted_only,
     make_writable_folder,
@@ -155,19 +155,18 @@ def find_or_export(
         return describe_runnable(fmu, model)
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     reasons: list[CannotExport] = []
+
+    def is_usable(path: Path) -> bool:
+        return is_current_and_trusted(path.parent.name, model, path.parents[1])
+
     for candidate in dict.fromkeys((form, WITHOUT_COMPILER)):
         if candidate != form:
             text = f"no {form} FMU here, {candidate} serves instead, without events"
             log_once(f"{text}: {reasons[0]}")
         paths = [base / candidate / f"{model}.fmu" for base in folders]
-        for base, path in zip(folders, paths, strict=True):
-            if is_current_and_trusted(candidate, model, base):
-                return describe(path, model)
+        make = functools.partial(export, model, candidate, folders[0], level=level)
         try:
-            with creation_lock(paths[0]):  # another process may just have exported it
-                if not is_current_and_trusted(candidate, model, folders[0]):
-                    export(model, candidate, folders[0], level=level)
-            return describe(paths[0], model)
+            return describe(find_or_make(paths, is_usable, make), model)
         except CannotExport as reason:
             reasons.append(reason)
     text = f"FMU {model}: none matches the current sources, and none can be built here"

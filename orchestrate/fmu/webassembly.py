@@ -17,7 +17,7 @@ from fmu_src.export.forms import MODELS
 from fmu_src.export.sources import load_model, model_sources
 
 from ..errors import InputError
-from ..files import creation_lock, make_writable_folder, write_atomically
+from ..files import find_or_make, make_writable_folder, write_atomically
 from ..model.ranges import PUSHES
 from . import events, oscillator
 from .exported import SHIPPED, default_folder
@@ -47,24 +47,17 @@ def find_or_compile_web_kernel(folder: str | PathLike[str] | None = None) -> Web
     folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     guid = sources.module_guid()
     variables = {name: sources.value_references(name) for name in sources.MODELS}
-    for path in (base / FILE for base in folders):
-        module = read_current_module(path, guid)
-        if module:
-            return WebKernel(module, variables, guid)
+
+    def is_current(path: Path) -> bool:
+        return path.is_file() and sources.guid_inside_module(path.read_bytes()) == guid
+
     try:
-        with creation_lock(folders[0] / FILE):
-            module = read_current_module(folders[0] / FILE, guid)
-            module = module or compile_module(folders[0]).read_bytes()
+        paths = [base / FILE for base in folders]
+        path = find_or_make(paths, is_current, lambda: compile_module(folders[0]))
     except CannotExport as reason:
         text = f"{FILE.name}: none matches the current sources, and none can be built here"
         raise InputError(f"{text}: {reason}") from None
-    return WebKernel(module, variables, guid)
-
-
-def read_current_module(path: Path, guid: str) -> bytes:
-    """Return a WebAssembly file's bytes if it has the present sources' GUID, else ``b""``."""
-    module = path.read_bytes() if path.is_file() else b""
-    return module if sources.guid_inside_module(module) == guid else b""
+    return WebKernel(path.read_bytes(), variables, guid)
 
 
 def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:

@@ -26,12 +26,12 @@ def breakages(source):
 
 def changes(source):
     """Return all changes of a module, also those that leave no Python."""
-    tree = ast.parse(source)
+    tree, lines = ast.parse(source), [line.encode() for line in source.splitlines(keepends=True)]
     indices = {id(part) for node in ast.walk(tree) for part in subscripts(node)}
     nodes = [node for node in ast.walk(tree) if id(node) not in indices]
-    edits = sorted({edit for node in nodes for edit in edits_of(node, source)})
+    edits = sorted({edit for node in nodes for edit in edits_of(node, lines)})
     fields = threshold_lines(tree)
-    found = (broken_by(edit, source, edit[0] in fields) for edit in edits)
+    found = (broken_by(edit, lines, edit[0] in fields) for edit in edits)
     return {(one.text, one.broken): one for one in found}.values()
 
 
@@ -51,10 +51,11 @@ def subscripts(node):
     return [part for one in hidden if one is not None for part in ast.walk(one)]
 
 
-def edits_of(node, source):
+def edits_of(node, lines):
     """Yield first line, column, last line, column and new text of all edits of one node."""
     if isinstance(node, ast.Constant) and type(node.value) in (int, float) and node.value:
-        for text in numbers(node.value, ast.get_source_segment(source, node)):
+        written = lines[node.lineno - 1][node.col_offset : node.end_col_offset].decode()
+        for text in numbers(node.value, written):
             yield *span(node), text
     elif isinstance(node, ast.Compare) and len(node.ops) == 1:
         yield *between(node.left, node.comparators[0]), f" {NEGATED[type(node.ops[0])]} "
@@ -97,22 +98,19 @@ def between(left, right):
     return left.end_lineno, left.end_col_offset, right.lineno, right.col_offset
 
 
-def broken_by(edit, source, threshold):
+def broken_by(edit, lines, threshold):
     """Return the breakage by one edit; brackets between the operands stay."""
     first, column, last, end, text = edit
-    lines = source.splitlines(keepends=True)
-    raw = [line.encode() for line in lines]
-    begin = sum(map(len, raw[: first - 1])) + column
-    stop = sum(map(len, raw[: last - 1])) + end
-    whole = source.encode()
+    begin, stop = (sum(map(len, lines[: n - 1])) + at for n, at in ((first, column), (last, end)))
+    whole = b"".join(lines)
     gap = whole[begin:stop].decode()
     if text.startswith(" "):  # an operator
         closing = gap[: len(gap) - len(gap.lstrip(" )\n"))]
         opening = gap[len(gap.rstrip(" (\n")) :]
         text = closing.rstrip(" ") + text + opening.lstrip(" ")
     broken = (whole[:begin] + text.encode() + whole[stop:]).decode()
-    changed = broken.splitlines()[first - 1].strip()
-    before = lines[first - 1].strip()
+    made = broken.splitlines()
+    before, changed = lines[first - 1].decode().strip(), made[first - 1].strip()
     if changed == before:  # an operator that begins the next line
-        before, changed = lines[first].strip(), broken.splitlines()[first].strip()
+        before, changed = lines[first].decode().strip(), made[first].strip()
     return Breakage(first, before, changed, broken, threshold)
