@@ -15,9 +15,8 @@ from . import held_files
 from .exports import BUILD, refresh, unexpected
 from .fmu.programs.driver import Fmu2
 
-everywhere = settings(
-    deadline=None, derandomize=True, database=None, suppress_health_check=list(HealthCheck)
-)
+alike = {"deadline": None, "derandomize": True, "database": None}
+everywhere = settings(**alike, suppress_health_check=list(HealthCheck))
 settings.register_profile("few", everywhere, max_examples=10)
 settings.register_profile("many", everywhere, max_examples=100)
 settings.load_profile("few")

@@ -35,24 +35,29 @@ class System(NamedTuple):
 
 def draw_structure(rng: np.random.Generator) -> tuple[Structure, float]:
     """Draw a structure and a frequency ratio, as widely as users may enter them."""
-    ratios = {"mu": draw_log_uniform(rng, 0.25, 4.0), "kappa": draw_log_uniform(rng, 0.4, 3.0)}
-    dampings = {name: draw_log_uniform(rng, 0.002, 0.2) for name in ("D1", "D2")}
+    ratios = draw_ratios(rng, 0.002)
     e, clearance = float(rng.uniform(0.05, 0.95)), float(rng.choice([-1.0, 0.0, 1.0]))
     clearance *= draw_log_uniform(rng, 1e-3, 8.0)
-    structure = Structure.nondimensional(**ratios, **dampings, e=e, clearance=clearance)
+    structure = Structure.nondimensional(**ratios, e=e, clearance=clearance)
     return structure, draw_log_uniform(rng, 0.3, 5.0)
+
+
+def draw_ratios(rng: np.random.Generator, least_damping: float) -> dict[str, float]:
+    """Draw ratios of mass and stiffness, and two damping ratios."""
+    ends = {"mu": (0.25, 4.0), "kappa": (0.4, 3.0)}
+    ends |= dict.fromkeys(("D1", "D2"), (least_damping, 0.2))
+    return {name: draw_log_uniform(rng, *pair) for name, pair in ends.items()}
 
 
 def draw_system(rng: np.random.Generator) -> System:
     """Draw a structure with a drive, as widely as users may enter them."""
-    ratios = {"mu": draw_log_uniform(rng, 0.25, 4.0), "kappa": draw_log_uniform(rng, 0.4, 3.0)}
-    dampings = {name: draw_log_uniform(rng, 0.003, 0.2) for name in ("D1", "D2")}
+    ratios = draw_ratios(rng, 0.003)
     contact = {"e": float(rng.uniform(0.05, 0.95)), "clearance": float(rng.uniform(-8.0, 8.0))}
     contact["clearance"] *= bool(rng.random() < 0.7)
     motor = {"b": draw_log_uniform(rng, 0.004, 0.5), "beta": float(rng.uniform(0.05, 0.4))}
     motor["epsilon"] = float(rng.uniform(3e-4, 2e-3))
     box = {"Omega_b": float(rng.uniform(0.05, 0.3)), "D_b": float(rng.uniform(0.005, 0.05))}
-    structure = Structure.nondimensional(**ratios, **dampings, **contact)
+    structure = Structure.nondimensional(**ratios, **contact)
     return System(structure, Drive.nondimensional(**motor, **box, structure=structure))
 
 
@@ -68,10 +73,8 @@ def draw_with_folds(rng: np.random.Generator) -> System:
 def smallest_slope(system: System, count: int = 10_001) -> float:
     """Return the smallest slope d eta0 / d Omega at the resonance; negative with folds."""
     numerator, denominator = averaged.slope_polynomials(*system)
-    low, peak = (
-        averaged.eta_between_box_and_bonded_resonance(*system),
-        averaged.bonded_resonance(*system),
-    )
+    low = averaged.eta_between_box_and_bonded_resonance(*system)
+    peak = averaged.bonded_resonance(*system)
     near = peak + averaged.bonded_resonance_half_width(*system) * np.linspace(-20.0, 20.0, count)
     speeds = np.concatenate([np.linspace(low, 2.0 * peak, count), near[near > low]])
     return float((numerator(speeds) / denominator(speeds)).min())
@@ -81,19 +84,15 @@ def scale_to_slope(system: System, slope: float) -> System:
     """Scale the unbalance so that the branch has a given smallest slope."""
     structure, drive = system
     share = (1.0 - slope) / (1.0 - smallest_slope(system))
-    numbers = {
-        name: getattr(drive, name)(structure) for name in ("beta", "b", "Omega_b", "D_b")
-    } | {"epsilon": drive.epsilon * share}
+    numbers = {n: getattr(drive, n)(structure) for n in ("beta", "b", "Omega_b", "D_b")}
+    numbers["epsilon"] = drive.epsilon * share
     return System(structure, Drive.nondimensional(**numbers, structure=structure))
 
 
 def ramp_ends(system: System) -> tuple[float, float]:
     """Return the two ends of the voltage ramp, over K omega, past both jumps."""
-    folds = averaged.folds(*system)
-    resonance = averaged.bonded_resonance(*system)
-    places = [fold.eta0 for fold in folds] or [
-        float(averaged.stationary_voltage(*system, resonance))
-    ]
+    at_resonance = averaged.stationary_voltage(*system, averaged.bonded_resonance(*system))
+    places = [fold.eta0 for fold in averaged.folds(*system)] or [float(at_resonance)]
     return min(places) - 0.15, max(places) + 0.15
 
 

@@ -39,9 +39,8 @@ class Signal:
         return Signal(self.terms + other.terms, [a + b for a, b in pairs])
 
     def __rmul__(self, factor: Any) -> Signal:
-        return Signal(
-            [(factor * c, s) for c, s in self.terms], [factor * p for p in self.polynomial]
-        )
+        terms = [(factor * c, s) for c, s in self.terms]
+        return Signal(terms, [factor * p for p in self.polynomial])
 
     def derivative(self) -> Signal:
         return Signal([(c * s, s) for c, s in self.terms], [*self.polynomial[1:], mp.mpf(0)])
@@ -112,10 +111,9 @@ def oscillator_motion(
 ) -> Signal:
     """Return an oscillator's displacement in the box as a ``Signal``, from x and v at 0."""
     mass, damping, stiffness = mp.mpf(mass), mp.mpf(damping), mp.mpf(stiffness)
-    exponents = [
-        (c, avoid_resonance(s, damping / mass, stiffness / mass)) for c, s in acceleration.terms
-    ]
-    forced = [(-c / (s * s + damping / mass * s + stiffness / mass), s) for c, s in exponents]
+    d, k = damping / mass, stiffness / mass
+    exponents = [(c, avoid_resonance(s, d, k)) for c, s in acceleration.terms]
+    forced = [(-c / (s * s + d * s + k), s) for c, s in exponents]
     cubic = [mp.mpf(0)] * 4
     # mass q'' + damping q' + stiffness q = -mass p: exact after four rounds, p being a cubic
     for _ in range(4):

@@ -13,10 +13,11 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from orchestrate.running.journal import table_to_bytes
+from orchestrate.running.journal import table_from_bytes, table_to_bytes
 
 Damage = Callable[[Path, random.Random], None]
 
@@ -70,15 +71,17 @@ def put_row(path: Path, index: int, data: bytes) -> None:
 
 
 def rows_of_nan(path: Path, draw: random.Random) -> None:
-    index, data = draw.choice(rows(path))
-    put_row(
-        path, index, table_to_bytes({name: array * np.nan for name, array in arrays(data).items()})
-    )
+    change_row(path, draw, lambda array: array * np.nan)
 
 
 def a_shorter_row(path: Path, draw: random.Random) -> None:
+    change_row(path, draw, lambda array: array[:-1])
+
+
+def change_row(path: Path, draw: random.Random, change: Callable[[np.ndarray], np.ndarray]) -> None:
     index, data = draw.choice(rows(path))
-    put_row(path, index, table_to_bytes({name: array[:-1] for name, array in arrays(data).items()}))
+    table = {name: change(array) for name, array in table_from_bytes(data).items()}
+    put_row(path, index, table_to_bytes(table))
 
 
 def an_empty_row(path: Path, draw: random.Random) -> None:
@@ -102,12 +105,6 @@ def another_identity(path: Path, draw: random.Random) -> None:
     with closing(sqlite3.connect(path, isolation_level=None)) as database:
         text = draw.choice(["", "[]", "null", "{}", "{", '{"question": 1}'])
         database.execute("UPDATE about SET text = ? WHERE name = 'identity'", (text,))
-
-
-def arrays(data: bytes) -> dict[str, np.ndarray]:
-    from orchestrate.running.journal import table_from_bytes
-
-    return table_from_bytes(data)
 
 
 ROW_DAMAGE: Mapping[str, Damage] = {
@@ -157,12 +154,6 @@ class Surroundings:
         self, command: Sequence[str | Path], folder: Path, seconds: float = 120.0, **more: str
     ) -> subprocess.CompletedProcess[str]:
         """Run a command to its end; ``more`` is for its environment."""
-        return subprocess.run(
-            self.shell(command),
-            cwd=folder,
-            env={**os.environ, **more},
-            capture_output=True,
-            text=True,
-            timeout=seconds,
-            preexec_fn=self.limit,
-        )
+        where: Any = {"cwd": folder, "env": {**os.environ, **more}, "preexec_fn": self.limit}
+        pipes: Any = {"capture_output": True, "text": True, "timeout": seconds}
+        return subprocess.run(self.shell(command), **where, **pipes)

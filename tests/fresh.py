@@ -13,10 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PROCESS = Path(__file__).with_name("fresh_process.py")
-OURS = (
-    "PYTHONPATH",
-    "VIBROIMPACT_PURE_PYTHON",
-)  # what the outer process may have in its environment
+OURS = ("PYTHONPATH", "VIBROIMPACT_PURE_PYTHON")  # what the outer process may have
 
 
 def run_fresh(folder, program, *arguments, cwd, pure=False, env=None, timeout=300, under=()):
@@ -37,15 +34,9 @@ def run_fresh(folder, program, *arguments, cwd, pure=False, env=None, timeout=30
     call = [str(folder), *program.split(".")]
     text = json.dumps(arguments, default=str)
     if env or under or sys.platform != "linux":
-        done = subprocess.run(
-            [*under, sys.executable, str(PROCESS), *call],
-            input=text,
-            cwd=cwd,
-            env=environment,
-            capture_output=True,
-            text=True,
-            timeout=timeout,
-        )
+        pipes = {"input": text, "capture_output": True, "text": True, "timeout": timeout}
+        command = [*under, sys.executable, str(PROCESS), *call]
+        done = subprocess.run(command, cwd=cwd, env=environment, **pipes)
     else:
         done = forked([*call, json.loads(text)], environment, cwd, timeout)
     told = f"exit code {done.returncode}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
@@ -71,12 +62,8 @@ def forked(call, environment, cwd, timeout):
         outputs = [Path(folder, name) for name in ("out", "err")]
         for path in outputs:
             path.touch()
-        request = {
-            "call": call,
-            "environment": environment,
-            "cwd": str(cwd),
-            "outputs": list(map(str, outputs)),
-        }
+        request = {"call": call, "environment": environment, "cwd": str(cwd)}
+        request["outputs"] = list(map(str, outputs))
         process = server(threading.get_ident())
         process.stdin.write(json.dumps(request) + "\n")
         process.stdin.flush()

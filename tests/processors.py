@@ -40,11 +40,9 @@ def printed_on_each(arguments, processors):
         warnings.warn(f"this machine has no instructions of {processor}", stacklevel=2)
     if len(able) < 2:
         pytest.skip(f"this machine cannot be two of {', '.join(processors)}: it can be {able}")
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    children = [
-        subprocess.Popen([sys.executable, *arguments], cwd=ROOT, env=surroundings(one), **pipes)
-        for one in able
-    ]
+    where = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "cwd": ROOT}
+    command = [sys.executable, *arguments]
+    children = [subprocess.Popen(command, env=surroundings(one), **where) for one in able]
     ends = [child.communicate(timeout=1800) for child in children]
     for processor, child, (_, errors) in zip(able, children, ends, strict=True):
         assert child.returncode == 0, f"{processor}: {errors[-2000:]}"

@@ -16,9 +16,6 @@ def ordinary(
     """
     every = list(values)
     chosen = every[:kept] if isinstance(kept, int) else kept
-    return [
-        pytest.param(
-            *(one if several_names else (one,)), marks=[] if one in chosen else [pytest.mark.slow]
-        )
-        for one in every
-    ]
+    marks = [[] if one in chosen else [pytest.mark.slow] for one in every]
+    rows = every if several_names else [(one,) for one in every]
+    return [pytest.param(*row, marks=mark) for row, mark in zip(rows, marks, strict=True)]

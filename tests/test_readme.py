@@ -48,9 +48,7 @@ def test_the_version_stands_in_one_place_and_elsewhere_it_is_said_as_there():
     """Results say that of the code, not of the last ``pip install -e``."""
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
-    told = (
-        re.search(r"^version: (.*)$", citation, re.M)[1],
-        re.search(r"^## (\S+)", changes, re.M)[1],
-    )
+    told = [re.search(r"^version: (.*)$", citation, re.M)[1]]
+    told.append(re.search(r"^## (\S+)", changes, re.M)[1])
     models = {load_model(folder).version for folder in forms.MODELS.values()}
     assert {*told, orchestrate.__version__, *models} == {VERSION}

@@ -38,6 +38,8 @@ import resource, subprocess, sys, tempfile, time
 import numpy as np
 import orchestrate as o
 structure, quiet = o.Structure.nondimensional(), {{"progress": False, "jobs": 1}}
+motor = o.Structure.from_file("quick"), o.Drive.from_file("quick")
+halves = dict(m1=1.5, m2=1.2, f1=42.0, f2=48.0, zeta1=0.007, zeta2=0.007)
 etas = lambda first, last, count: np.linspace(first, last, count)
 o.simulate(structure, eta=0.8, periods=1)
 used = lambda whose: sum(resource.getrusage(whose)[:2])
@@ -50,42 +52,24 @@ SIZES = {"sweep": 7901, "side": 87, "starts": 100, "values": 50, "exponents": 10
 QUESTIONS = {  # the sizes are scaled
     "Figure 6": "o.sweep(structure, eta=etas(0.1, 8.0, {sweep}), **quiet)",
     "Figure 6, jobs=2": "o.sweep(structure, eta=etas(0.1, 8.0, {sweep}), progress=False, jobs=2)",
-    "map of 87 x 87 points": (
-        "o.map(structure, eta=etas(0.3, 3.0, {side}), e=etas(0.3, 0.9, {side}), **quiet)"
-    ),
-    "basin of 100 x 100 starts": (
-        "o.basin(structure, eta=1.315, x=('x_rel', 0, 1.3, {starts}), "
-        "y=('v_rel', -1.3, 1.3, {starts}), **quiet)"
-    ),
-    "attractors, 50 x 60 starts": (
-        "o.attractors(structure, eta=etas(0.9, 2.4, {values}), **quiet)"
-    ),
+    "map of 87 x 87 points": "o.map(structure, eta=etas(0.3, 3.0, {side}), "
+    "e=etas(0.3, 0.9, {side}), **quiet)",
+    "basin of 100 x 100 starts": "o.basin(structure, eta=1.315, x=('x_rel', 0, 1.3, {starts}), "
+    "y=('v_rel', -1.3, 1.3, {starts}), **quiet)",
+    "attractors, 50 x 60 starts": "o.attractors(structure, eta=etas(0.9, 2.4, {values}), **quiet)",
     "100 exponents": "o.lyapunov(structure, eta=etas(0.3, 3.0, {exponents}), **quiet)",
-    "command sweep, two cores": (
-        "subprocess.run([sys.executable, '-m', 'orchestrate', 'sweep', '--eta', "
-        "f'0.1:8:{{7.9 / {sweep}:.6f}}', '--output', tempfile.mkdtemp()], check=True, "
-        "stdout=subprocess.DEVNULL)"
-    ),
+    "command sweep, two cores": "subprocess.run([sys.executable, '-m', 'orchestrate', 'sweep', "
+    "'--eta', f'0.1:8:{{7.9 / {sweep}:.6f}}', '--output', tempfile.mkdtemp()], check=True, "
+    "stdout=subprocess.DEVNULL)",
     "simulate, 100 times": "[o.simulate(structure, eta=eta) for eta in etas(0.3, 3.0, {runs})]",
     "orbit, 100 values": "[o.orbit(structure, eta=eta, **quiet) for eta in etas(1.0, 1.1, {runs})]",
-    "a minute of vibration at 20 kHz": (
-        "o.shake(o.Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=48.0, zeta1=0.007, "
-        "zeta2=0.007), "
-        "o.Random(psd=((20.0, 0.5), (200.0, 0.5)), duration=0.6 * {runs}, seed=1), "
-        "sample_rate=2e4, **quiet)"
-    ),
-    "couple, 4000 s": (
-        "o.couple(o.Structure.from_file('quick'), o.Drive.from_file('quick'), voltage=1.5, "
-        "duration=40.0 * {runs}, **quiet)"
-    ),
-    "drive_branch of 200 points": (
-        "o.drive_branch(o.Structure.from_file('quick'), o.Drive.from_file('quick'), "
-        "most=2 * {runs}, **quiet)"
-    ),
-    "jump_voltages of 1.3 to 1.8 V": (
-        "o.jump_voltages(o.Structure.from_file('quick'), o.Drive.from_file('quick'), "
-        "voltage=(1.8 - 0.005 * {runs}, 1.8), **quiet)"
-    ),
+    "a minute of vibration at 20 kHz": "o.shake(o.Structure.from_halves(**halves), "
+    "o.Random(psd=((20.0, 0.5), (200.0, 0.5)), duration=0.6 * {runs}, seed=1), "
+    "sample_rate=2e4, **quiet)",
+    "couple, 4000 s": "o.couple(*motor, voltage=1.5, duration=40.0 * {runs}, **quiet)",
+    "drive_branch of 200 points": "o.drive_branch(*motor, most=2 * {runs}, **quiet)",
+    "jump_voltages of 1.3 to 1.8 V": "o.jump_voltages(*motor, "
+    "voltage=(1.8 - 0.005 * {runs}, 1.8), **quiet)",
 }
 
 
@@ -93,14 +77,17 @@ class QuestionFailed(Exception):
     """A question that a checkout does not know, with the reason."""
 
 
+def box(eta: float) -> dict[str, float]:
+    return {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
+
+
 def time_periods_and_count_impacts(
     fmu: str | PathLike[str], eta: float, count: int
 ) -> tuple[float, int]:
     """Return the seconds and impacts of ``count`` periods in one step, after some to settle."""
-    period = 2.0 * math.pi / eta
-    drive = {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
+    period = TURN / eta
     with Instance(fmu) as instance:
-        instance.initialize(**drive, x_rel_max_on=False)
+        instance.initialize(**box(eta), x_rel_max_on=False)
         instance.step(0.0, SETTLE * period)
         before = instance.get("impact_count")[0]
         begin = time.perf_counter()
@@ -129,12 +116,10 @@ def time_impact(fmu: str | PathLike[str], etas: Sequence[float], count: int) -> 
     seconds, impacts = 0.0, 0
     with Instance(fmu) as instance:
         for eta in etas:
-            period = TURN / eta
             instance.reset()
-            drive = {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
-            instance.initialize(**drive, x_rel_max_on=False)
+            instance.initialize(**box(eta), x_rel_max_on=False)
             begin = time.process_time()
-            instance.step(0.0, count * period)
+            instance.step(0.0, count * TURN / eta)
             seconds += time.process_time() - begin
             impacts += instance.get("impact_count")[0]
     return seconds / impacts
@@ -150,8 +135,7 @@ def time_resonance(fmu: str | PathLike[str], count: int = 500) -> tuple[float, f
         for bonded in (True, False):
             for eta in (*etas, *etas[::-1]):
                 instance.reset()
-                drive = {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
-                instance.initialize(**drive, bonded=bonded, x_rel_max_on=False)
+                instance.initialize(**box(eta), bonded=bonded, x_rel_max_on=False)
                 begin = time.process_time()
                 instance.step(0.0, 560 * TURN / eta)
                 alone += time.process_time() - begin
@@ -212,8 +196,8 @@ def print_comparison_of_solvers(count: int) -> None:
         taken, count_of_impacts = min(runs)
         seconds, impacts = seconds + taken, impacts + count_of_impacts
         each = taken / count
-        box = partial(lambda eta, time: -math.sin(eta * time), eta)  # of amplitude 1/eta^2 m
-        solver = sampled_solver.time_simulation_from_rest(PAPER, box, 10 * TURN / eta)[0] / 10
+        sine = partial(lambda eta, time: -math.sin(eta * time), eta)  # of amplitude 1/eta^2 m
+        solver = sampled_solver.time_simulation_from_rest(PAPER, sine, 10 * TURN / eta)[0] / 10
         ratios = time_periods_in_pure_python(python, eta, 30) / 30 / each, solver / each
         row = (eta, each * 1e6, taken / max(count_of_impacts, 1) * 1e9, *ratios)
         print("".join(f"{value:12.4g}" for value in row), flush=True)

@@ -18,14 +18,15 @@ LINK = 0o120777 << 16
 BOMB = 5 << 28  # bytes that come out of one
 CROWD = 70_000  # files
 ESCAPES = (  # behind some "../"
+    *("{}escaped", "binaries/{}escaped", "resources/x/../../{}escaped", "/tmp/escaped"),
     *(
-        "{}escaped",
-        "binaries/{}escaped",
-        "resources/x/../../{}escaped",
-        "/tmp/escaped",
         "//escaped",
+        "..\\escaped",
+        "C:\\escaped",
+        "C:escaped",
+        "{}" + "x" * 200 + "/escaped",
+        "./../escaped",
     ),
-    *("..\\escaped", "C:\\escaped", "C:escaped", "{}" + "x" * 200 + "/escaped", "./../escaped"),
 )
 NAMES = (
     *("../../../../../../tmp/escaped", "/tmp/escaped", "a&#10;b&#10;Traceback", "x" * 100_000),
@@ -64,9 +65,8 @@ def add_crowd(files: Files, chance: random.Random) -> None:
 def add_entities(files: Files, chance: random.Random) -> None:
     """Let the XML grow as it is parsed, or include other files."""
     depth = chance.randint(7, 11)
-    levels = '<!ENTITY e0 "lol">' + "".join(
-        f'<!ENTITY e{i} "{10 * f"&e{i - 1};"}">' for i in range(1, depth + 1)
-    )
+    more = (f'<!ENTITY e{i} "{10 * f"&e{i - 1};"}">' for i in range(1, depth + 1))
+    levels = "".join(['<!ENTITY e0 "lol">', *more])
     secret = '<!ENTITY e SYSTEM "file:///etc/hostname">'
     remote = '<!ENTITY % d SYSTEM "http://127.0.0.1:9/d.dtd"> %d; <!ENTITY e "">'
     document, name = chance.choice(((levels, f"&e{depth};"), (secret, "&e;"), (remote, "&e;")))

@@ -54,9 +54,8 @@ def rows(separator: str, heading: str, *columns: np.ndarray) -> str:
 
 def record() -> xr.Dataset:
     """The measurement that all files hold."""
-    return orchestrate.record(
-        box_acceleration=9.81 * BASE, acceleration1=9.81 * FACE, sample_rate=RATE
-    )
+    channels = {"box_acceleration": 9.81 * BASE, "acceleration1": 9.81 * FACE}
+    return orchestrate.record(**channels, sample_rate=RATE)
 
 
 def write_tdms(path: Path) -> None:
@@ -144,9 +143,8 @@ def change_numbers(path: Path, draw: random.Random) -> None:
         places = [m.span() for m in re.finditer(r"-?\d+(\.\d+)?(e[+-]?\d+)?", lines[row])]
         if places:
             begin, end = draw.choice(places)
-            number = draw.choice(
-                (*NUMBERS, lines[row][begin:end] + draw.choice(("e9", "e-9", "5")))
-            )
+            scaled = lines[row][begin:end] + draw.choice(("e9", "e-9", "5"))
+            number = draw.choice((*NUMBERS, scaled))
             lines[row] = lines[row][:begin] + number + lines[row][end:]
     path.write_text("\n".join(lines))
 

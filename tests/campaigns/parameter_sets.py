@@ -208,11 +208,8 @@ def set_added_parameters(rng: Chance, values: Values) -> None:
 def unit_of_motion(values: Values, dimension: Mapping[str, int]) -> float:
     """Return the unit that mass 1, its frequency and the largest length give a dimension."""
     lengths = [abs(values[name]) for name in ("x1_start", "x2_start", "box_amplitude")]
-    units = {
-        "kg": values["m1"],
-        "m": max(*lengths, 1e-60),
-        "s": 1.0 / natural_frequencies(values)[0],
-    }
+    units = {"kg": values["m1"], "m": max(*lengths, 1e-60)}
+    units["s"] = 1.0 / natural_frequencies(values)[0]
     return math.prod(units[base] ** exponent for base, exponent in dimension.items())
 
 

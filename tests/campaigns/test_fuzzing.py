@@ -26,14 +26,9 @@ def test_steps_end_in_the_whole_declared_range(fmu, version, model, seed, budget
 
     Replay one: ``importer BINARY replay declared < FILE``.
     """
-    parts = (
-        version,
-        model,
-        find_or_export(model, version).path.parents[1],
-        tmp_path,
-        importers.SANITIZE,
-    )
-    program, sequence = importers.importer_with_sanitizer(*parts), tmp_path / "sequence"
+    parts = find_or_export(model, version).path.parents[1], tmp_path, importers.SANITIZE
+    program = importers.importer_with_sanitizer(version, model, *parts)
+    sequence = tmp_path / "sequence"
     arguments = "declared", seed % 2**31, budget, sequence
     ended = program.run(*arguments, timeout=36_000, success=False)
     match = re.search(r"CHECKS (\d+) FAILURES (\d+)", ended.stdout)

@@ -87,9 +87,7 @@ def test_hostile_measurements_are_read_or_refused_in_one_line(
         arguments = measurements.reading(kind, draw)
         fate, problem = attack(path, kind, arguments)
         path.unlink()
-        strays = sorted(set(folder.iterdir()) - set(before)) + [
-            one for one in [ran] if one.exists()
-        ]
+        strays = [one for one in (*folder.iterdir(), ran) if one.exists() and one not in before]
         texts = [*capfd.readouterr(), *(one.getMessage() for one in caplog.records)]
         caplog.clear()
         problem = problem or (f"left {strays}" if strays else "")
@@ -99,10 +97,8 @@ def test_hostile_measurements_are_read_or_refused_in_one_line(
             findings.append(f"file {number} ({kind}, {harm}, {arguments}): {problem}")
             (tmp_path / f"finding{number}{path.suffix}").write_bytes(kept)
     shutil.rmtree(folder)
-    largest = [
-        resource.getrusage(who).ru_maxrss
-        for who in (resource.RUSAGE_CHILDREN, resource.RUSAGE_SELF)
-    ]
+    whose = resource.RUSAGE_CHILDREN, resource.RUSAGE_SELF
+    largest = [resource.getrusage(who).ru_maxrss for who in whose]
     if max(largest) > MEMORY:
         findings.append(f"{largest} KiB of memory in readers and here")
     expect_none(findings, counts)

@@ -8,15 +8,8 @@ import numpy as np
 from orchestrate.weak_drive.hysteresis import HysteresisSettings
 
 VALUES = 4  # of a list, at most
-MOST = {
-    "longest": 0,
-    "transient": 5,
-    "periods": 30,
-    "samples": 6,
-    "starts": 3,
-    "points": 128,
-    "settle": 5,
-}
+MOST = {"longest": 0, "transient": 5, "settle": 5}
+MOST |= {"periods": 30, "samples": 6, "starts": 3, "points": 128}
 QUESTIONS = (
     *("simulate", "resonance", "sweep", "spectra", "map", "lyapunov", "attractors", "basin"),
     *("impact_statistics", "couple"),
@@ -28,11 +21,8 @@ def fewer(value):
     if isinstance(value, (list, np.ndarray, tuple)) and np.ndim(value) == 1:
         if len(value) > VALUES and not isinstance(value[0], str):
             places = np.linspace(0, len(value) - 1, VALUES).astype(int)
-            return (
-                type(value)(value[place] for place in places)
-                if isinstance(value, (list, tuple))
-                else value[places]
-            )
+            few = [value[place] for place in places]
+            return np.array(few) if isinstance(value, np.ndarray) else type(value)(few)
         if len(value) == 4 and isinstance(value[0], str):  # a side of a plane
             return (*value[:3], min(value[3], VALUES))
     return value

@@ -53,10 +53,8 @@ def of_the_averaged_theory(count):
     """Folds and Neimark-Sacker points of random drives."""
     found = []
     for system in random_sets(count, seed=5):
-        found += [
-            averaged.folds(*system.as_bonded()),
-            averaged.neimark_sacker_points(*system.as_bonded()),
-        ]
+        bonded = system.as_bonded()
+        found += [averaged.folds(*bonded), averaged.neimark_sacker_points(*bonded)]
     kinds = [[place.kind for place in places] for places in found]
     return {"decided": kinds, "places": [place.eta0 for places in found for place in places]}
 

@@ -28,9 +28,8 @@ UNIT = Structure.nondimensional()
 
 
 def motor() -> Drive:
-    return Drive.nondimensional(
-        beta=0.25, epsilon=1e-3, b=0.02, Omega_b=0.1, D_b=0.005, structure=OWN
-    )
+    ratios = {"beta": 0.25, "epsilon": 1e-3, "b": 0.02, "Omega_b": 0.1, "D_b": 0.005}
+    return Drive.nondimensional(**ratios, structure=OWN)
 
 
 def questions() -> dict[str, xr.Dataset]:
@@ -38,40 +37,33 @@ def questions() -> dict[str, xr.Dataset]:
     box = {"frequency": NEAR, "amplitude": 1e-3}
     short = {"transient": 20, "samples": 8}
     many = np.linspace(0.9, 1.1, 3) * OWN.omega
-    at_two = {"frequency": many[:2], "amplitude": 1e-3}
+    at_three, at_two = ({"frequency": many[:n], "amplitude": 1e-3} for n in (3, 2))
+    pressed, levels = OWN.replace(clearance=-1e-6), {"frequency": many, "level": [0.1, 5.0]}
+    plane = {"x": ("x_rel", 0.0, 1e-3, 3), "y": ("v_rel", -0.1, 0.1, 2)}
+    numbers = {"kappa": [1.2, 1.5], "e": [0.3, 0.7], "exponent": True}
     volts = motor().volts(OWN)
+    held = {"inputs": {"voltage": volts}, "duration": 0.2, "step": 0.01, "record": ["speed"]}
+    ramp = {"voltage": (1.2 * volts, 1.25 * volts), "rate": 1e-3 * volts * OWN.omega}
     return {
         "simulate": orchestrate.simulate(OWN, **box, periods=3, points=20),
-        "resonance": orchestrate.resonance(OWN, frequency=many, amplitude=1e-3, **short),
-        "resonance levels": orchestrate.resonance_levels(
-            OWN.replace(clearance=-1e-6), frequency=many, level=[0.1, 5.0], **short
-        ),
-        "sweep": orchestrate.sweep(OWN, frequency=many, amplitude=1e-3, **short),
-        "sweep both": orchestrate.sweep(
-            OWN, frequency=many, amplitude=1e-3, direction="both", **short
-        ),
+        "resonance": orchestrate.resonance(OWN, **at_three, **short),
+        "resonance levels": orchestrate.resonance_levels(pressed, **levels, **short),
+        "sweep": orchestrate.sweep(OWN, **at_three, **short),
+        "sweep both": orchestrate.sweep(OWN, **at_three, direction="both", **short),
         "sweep over": orchestrate.sweep(OWN, over="k2", values=[6000.0, 8000.0], **box, **short),
-        "map": orchestrate.map(OWN, frequency=many, amplitude=1e-3, e=[0.3, 0.7], transient=20),
-        "map exponent": orchestrate.map(
-            OWN, **box, kappa=[1.2, 1.5], e=[0.3, 0.7], transient=20, exponent=True
-        ),
+        "map": orchestrate.map(OWN, **at_three, e=[0.3, 0.7], transient=20),
+        "map exponent": orchestrate.map(OWN, **box, **numbers, transient=20),
         "lyapunov": orchestrate.lyapunov(OWN, **at_two, transient=20, periods=100),
         "attractors": orchestrate.attractors(OWN, **at_two, starts=4, seed=1, transient=20),
-        "basin": orchestrate.basin(
-            OWN, **box, x=("x_rel", 0.0, 1e-3, 3), y=("v_rel", -0.1, 0.1, 2), transient=20
-        ),
+        "basin": orchestrate.basin(OWN, **box, **plane, transient=20),
         "spectra": orchestrate.spectra(OWN, **box, periods=4, points=128, transient=20),
         "poincare": orchestrate.poincare(OWN, **box, transient=20, periods=20, at="impacts"),
         "impact_statistics": orchestrate.impact_statistics(OWN, **box, transient=20, periods=20),
         "orbit": orchestrate.orbit(UNIT, eta=2.0),
         "manifold": orchestrate.manifold(UNIT, eta=3.0, length=0.3),
         "branch": orchestrate.branch(UNIT, eta=2.0, limits=(1.95, 2.05)),
-        "cosimulate": orchestrate.cosimulate(
-            OWN, motor(), inputs={"voltage": volts}, duration=0.2, step=0.01, record=["speed"]
-        ),
-        "couple": orchestrate.couple(
-            OWN, motor(), voltage=(1.2 * volts, 1.25 * volts), rate=1e-3 * volts * OWN.omega
-        ),
+        "cosimulate": orchestrate.cosimulate(OWN, motor(), **held),
+        "couple": orchestrate.couple(OWN, motor(), **ramp),
     }
 
 

@@ -22,15 +22,13 @@ from orchestrate.units import (
 )
 
 TURN, G = 2.0 * np.pi, 9.80665
-BEAM = Structure.from_halves(
-    m1=1.0, m2=1.2, f1=42.0, f2=55.0, zeta1=0.02, zeta2=0.02, clearance=-2e-5
-)
+HALVES = {"m1": 1.0, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.02, "zeta2": 0.02}
+BEAM = Structure.from_halves(**HALVES, clearance=-2e-5)
 HERTZ = np.array([44.0, 48.0, 52.0])
 BOX = {"frequency": TURN * 48.0, "amplitude": 3.0 / (TURN * 48.0) ** 2}
 SHORT = {"transient": 20, "samples": 6}
-FOREIGN = re.compile(  # units that are not asked for with rpm, um, g
-    r"\bHz\b|rad/s|\bmm\b|m/s|\bin m\b|\d m\b|\beta\b|\\eta"
-)
+# units that are not asked for with rpm, um, g
+FOREIGN = re.compile(r"\bHz\b|rad/s|\bmm\b|m/s|\bin m\b|\d m\b|\beta\b|\\eta")
 
 
 @cache

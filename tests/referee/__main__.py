@@ -87,9 +87,8 @@ def groups(options: argparse.Namespace) -> dict[str, int]:
 
     counts = {f"figure {number}": 1 for number in questions.PAPER}
     few = max(1, options.questions // 4)
-    counts |= {
-        name: few if name in questions.SLOW else options.questions for name in questions.QUESTIONS
-    }
+    usual = options.questions
+    counts |= {name: few if name in questions.SLOW else usual for name in questions.QUESTIONS}
     counts |= {"beams": options.beams, "structures": options.structures}
     counts["drives"] = 8 * options.drives
     return {name: count for name, count in counts.items() if name in (options.only or counts)}
