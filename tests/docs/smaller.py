@@ -44,7 +44,7 @@ def smaller(question):
         if "rate" in keywords:
             ends = np.ravel(keywords["voltage"])
             keywords |= {"rate": float(abs(ends[-1] - ends[0])), "settle": 1.0}
-            keywords["hysteresis"] = HysteresisSettings(grid=1.0, budget=0.5)
+            keywords["hysteresis"] = HysteresisSettings(grid=1.0, budget=0.1)
         return question(*arguments, **keywords)
 
     return asked

@@ -39,7 +39,7 @@ def of_an_orbit_branch(limits):
 
 def of_a_drive(system):
     decided, places = [], []
-    for leg in branch_of(system, most=60, range_=(0.995, 1.018))[0]:
+    for leg in branch_of(system, most=60, range_=(1.005, 1.018))[0]:
         stable = [int(abs(one.multipliers[0]) < 1.0) for one in leg.points]
         kinds = [event.kind.label for event in leg.bifurcations]
         impacts = [one.period.impacts for one in leg.points]

@@ -113,9 +113,10 @@ def good(exported):
 
 @pytest.mark.parametrize("kind", REFUSED[:-1])
 def test_an_enemys_archive_is_refused_in_a_line(good, tmp_path, monkeypatch, kind):
-    monkeypatch.setattr("orchestrate.fmu.description.MAX_BYTES", 1 << 26)
-    monkeypatch.setattr(archives, "BOMB", 1 << 27)
-    monkeypatch.setattr(archives, "CROWD", 10_001)
+    monkeypatch.setattr("orchestrate.fmu.description.MAX_BYTES", 1 << 24)
+    monkeypatch.setattr("orchestrate.fmu.description.MAX_FILES", 1000)
+    monkeypatch.setattr(archives, "BOMB", 1 << 25)
+    monkeypatch.setattr(archives, "CROWD", 1001)
     for seed in range(1 if kind in ("bomb", "crowd of files") else 2):
         archives.write(kind, good, tmp_path / "bad.fmu", random.Random(seed))
         with pytest.raises(InputError, match="not readable as an FMU") as told:
