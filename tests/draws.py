@@ -27,7 +27,6 @@ class System(NamedTuple):
     drive: Drive
 
     def of_kind(self, kind: str) -> System:
-        """Return the system with its structure bonded or delaminated."""
         bonded = kind == "bonded"
         structure = self.structure.as_bonded() if bonded else self.structure.as_delaminated()
         return self._replace(structure=structure)
@@ -43,7 +42,6 @@ def draw_structure(rng: np.random.Generator) -> tuple[Structure, float]:
 
 
 def draw_ratios(rng: np.random.Generator, least_damping: float) -> dict[str, float]:
-    """Draw ratios of mass and stiffness, and two damping ratios."""
     ends = {"mu": (0.25, 4.0), "kappa": (0.4, 3.0)}
     ends |= dict.fromkeys(("D1", "D2"), (least_damping, 0.2))
     return {name: draw_log_uniform(rng, *pair) for name, pair in ends.items()}

@@ -27,7 +27,6 @@ class Signal:
     """Function of time ``Re sum c_k e^{s_k t} + sum p_k t^k / k!``."""
 
     def __init__(self, terms: Sequence[tuple[Any, Any]], polynomial: Sequence[Any]) -> None:
-        """Store the exponential terms and the polynomial, also in double precision."""
         self.terms, self.polynomial = terms, polynomial
         self._coarse = [(complex(c), complex(s)) for c, s in terms], [float(p) for p in polynomial]
 
@@ -46,7 +45,6 @@ class Signal:
         return Signal([(c * s, s) for c, s in self.terms], [*self.polynomial[1:], mp.mpf(0)])
 
     def __call__(self, t: Any) -> Any:
-        """Return the value at time t, in high precision."""
         t = mp.mpf(t)
         swinging = mp.re(sum(c * mp.exp(s * t) for c, s in self.terms))
         return swinging + taylor_polynomial(self.polynomial, t)
@@ -71,7 +69,6 @@ def taylor_polynomial(derivatives: Sequence[Any], t: Any) -> Any:
 
 
 def box_acceleration(values: Mapping[str, float], phase: Any) -> Signal:
-    """Return the box's acceleration as a ``Signal``, from the FMU's inputs and a phase, rad."""
     a = mp.mpf(values.get("box_amplitude", 1.0))
     frequency = mp.mpf(values.get("box_frequency", 0.0))
     names = ("acceleration", "jerk", "snap", "crackle")

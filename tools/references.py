@@ -103,7 +103,6 @@ def compute_reference_rows(reference: Reference, fmu: str | PathLike[str]) -> li
 
 
 def write_reference_files(reference: Reference, rows: Sequence[Sequence[float]]) -> None:
-    """Write the three files of a cross-check reference: results, inputs, options."""
     folder = MODELS / reference.folder / "reference"
     folder.mkdir(exist_ok=True)
     write_csv(folder / f"{reference.model}_ref.csv", ["time", *reference.outputs], rows)

@@ -36,7 +36,6 @@ class Page(HTMLParser):
     anchors: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
-        """Read the HTML file and collect its links and names."""
         super().__init__()
         self.feed(self.path.read_text(encoding="utf-8"))
 

@@ -51,5 +51,4 @@ class Fmi(ctypes.Structure):
 
 
 def value_references(instance: Instance, names: Sequence[str]) -> Any:
-    """Return the value references of variables as a C array."""
     return (c_uint * len(names))(*(instance.variable(name).valueReference for name in names))

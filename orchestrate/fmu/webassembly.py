@@ -132,13 +132,11 @@ def nonzero_numbers(structure: ctypes.Structure) -> dict[str, float]:
 
 
 def kernel_digest(model: str) -> str:
-    """Return a digest of the kernel sources that a model is made of."""
     files = model_sources(MODELS[model])
     return content_hash({name: files[name] for name in files if name.startswith("kernels/")})
 
 
 def compile_module(folder: Path) -> Path:
-    """Compile the WebAssembly module from the present sources; return its file."""
     path = folder / FILE
     log.info("compiling %s", path)
     module = sources.compile_module()

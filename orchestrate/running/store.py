@@ -65,11 +65,9 @@ class Store:
         return set(self._chunks)
 
     def get(self, index: int) -> Table:
-        """Return a stored chunk, by its number, as a dict of arrays."""
         return self._chunks[index]
 
     def put(self, index: int, table: Table) -> None:
-        """Store a computed chunk, a dict of arrays, under its number."""
         self._chunks[index] = table
 
     def drop(self, index: int, reason: str = "") -> None:
@@ -226,7 +224,6 @@ class DiskStore(Store):
         return self._result
 
     def close(self) -> None:
-        """Close the journal, delete it if empty, and release the lock on the result."""
         if self._journal is not None:
             with suppress(StoreError):
                 if self._journal.is_empty():

@@ -36,13 +36,11 @@ ATTRIBUTES = ("modelIdentifier", "modelName", "instantiationToken", "fmiVersion"
 
 
 def read_archive(fmu: Path) -> Files:
-    """Return a dict from name to bytes of the files in an FMU."""
     with zipfile.ZipFile(fmu) as archive:
         return {name: archive.read(name) for name in archive.namelist()}
 
 
 def write_archive(place: Path, files: Files, links: tuple[str, ...] = ()) -> None:
-    """Write files as an FMU archive; some of them are links."""
     with zipfile.ZipFile(place, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in files.items():
             entry = zipfile.ZipInfo(name)
@@ -53,12 +51,10 @@ def write_archive(place: Path, files: Files, links: tuple[str, ...] = ()) -> Non
 
 
 def add_path_traversal(files: Files, chance: random.Random) -> None:
-    """Add a file whose path leads out of the archive."""
     files[chance.choice(ESCAPES).format("../" * chance.randint(1, 12))] = b"escaped"
 
 
 def add_crowd(files: Files, chance: random.Random) -> None:
-    """Add more files than any model has."""
     files.update({f"resources/{i:x}": b"" for i in range(CROWD)})
 
 
@@ -152,7 +148,6 @@ def write_damaged(fmu: Path, place: Path, chance: random.Random) -> None:
 
 
 def write_name_twice(fmu: Path, place: Path, chance: random.Random) -> None:
-    """Write an FMU with two model descriptions of the same name."""
     files = read_archive(fmu)
     other = files[XML].replace(b'modelName="', b'modelName="Another')
     write_archive(place, files)
@@ -179,7 +174,6 @@ KINDS = (*ALTER, *WRITE)
 
 
 def write(kind: str, fmu: Path, place: Path, chance: random.Random) -> None:
-    """Write a hostile copy of a good FMU."""
     if kind in WRITE:
         WRITE[kind](fmu, place, chance)
         return

@@ -9,18 +9,15 @@ from orchestrate.fmu import OSCILLATOR, find_or_export
 
 @pytest.fixture
 def seed(request: pytest.FixtureRequest) -> int:
-    """Seed of all that is drawn."""
     return int(request.config.getoption("--seed"))
 
 
 @pytest.fixture
 def budget(request: pytest.FixtureRequest) -> int:
-    """Number of units to do: of the option, or of the campaign's mark."""
     default = request.node.get_closest_marker("budget").args[0]
     return int(request.config.getoption("--budget") or default)
 
 
 @pytest.fixture(scope="session")
 def fmu(exported: Path) -> Path:
-    """The oscillator's native FMU of FMI 3.0."""
     return find_or_export(OSCILLATOR).path

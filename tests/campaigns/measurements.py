@@ -47,13 +47,11 @@ X_Value\tbase\tface1\tComment
 
 
 def rows(separator: str, heading: str, *columns: np.ndarray) -> str:
-    """Columns of numbers as text."""
     lines = (separator.join(f"{one:.6g}" for one in row) for row in zip(*columns, strict=True))
     return heading + "\n".join(lines) + "\n"
 
 
 def record() -> xr.Dataset:
-    """The measurement that all files hold."""
     channels = {"box_acceleration": 9.81 * BASE, "acceleration1": 9.81 * FACE}
     return orchestrate.record(**channels, sample_rate=RATE)
 
@@ -218,7 +216,6 @@ def write_hostile(kind: str, folder: Path, draw: random.Random) -> tuple[Path, s
 
 
 def reading(kind: str, draw: random.Random) -> dict[str, object]:
-    """Arguments for reading a file."""
     choices: dict[str, tuple[object, ...]] = {
         "unit": (None, "g", "m/s2", "base=V,face1=V", "mm/s", "um"),
         "sample_rate": (None, None, 1000.0),

@@ -44,11 +44,9 @@ class Chance(np.random.Generator):
         return float(10.0 ** self.uniform(low, high))
 
     def one_of(self, *choices: float) -> float:
-        """Draw one of several numbers."""
         return choices[int(self.integers(len(choices)))]
 
     def sign(self) -> float:
-        """Draw -1 or 1."""
         return self.one_of(-1.0, 1.0)
 
     def perhaps(self) -> float:
@@ -57,7 +55,6 @@ class Chance(np.random.Generator):
 
 
 def natural_frequencies(values: Values) -> tuple[float, float]:
-    """Return the natural frequencies of the two masses, rad/s."""
     return math.sqrt(values["k1"] / values["m1"]), math.sqrt(values["k2"] / values["m2"])
 
 
@@ -83,7 +80,6 @@ def draw_ordinary(rng: Chance) -> Values:
 
 
 def make_nearly_equal(rng: Chance, values: Values) -> None:
-    """Change values to nearly equal oscillators with almost lossless impacts."""
     differs = [rng.perhaps() * rng.sign() * rng.power(-17.0, -2.0) for _ in range(2)]
     values["k2"] = values["k1"] * values["m2"] / values["m1"] * (1.0 + differs[0])
     values["d2"] = values["d1"] * values["m2"] / values["m1"] * (1.0 + differs[1])
@@ -102,14 +98,12 @@ def make_subnormal(rng: Chance, values: Values) -> None:
 
 
 def make_any_start_size(rng: Chance, values: Values) -> None:
-    """Change start values to sizes far below and far above the box's motion."""
     for name in ("x1_start", "x2_start", "v1_start", "v2_start"):
         values[name] *= rng.one_of(0.0, 1.0, 1.0) * rng.power(-150.0, 60.0)
     values["x1_start"], values["x2_start"] = sorted((values["x1_start"], values["x2_start"]))
 
 
 def make_small_start(rng: Chance, values: Values) -> None:
-    """Change start values to nearly rest with closed gap, under an ordinary drive."""
     values["x1_start"] = values["x2_start"] = rng.perhaps() * rng.power(-20.0, 0.0)
     values["v1_start"] = rng.perhaps() * rng.power(-20.0, 0.0)
     values["v2_start"] = values["v1_start"] + rng.perhaps() * rng.power(-20.0, 0.0)
@@ -125,7 +119,6 @@ def make_large_gamma(rng: Chance, values: Values) -> None:
 
 
 def make_overdamped(rng: Chance, values: Values) -> None:
-    """Change the dampers to about and far beyond critical."""
     for name, mass, stiffness in (("d1", "m1", "k1"), ("d2", "m2", "k2")):
         critical = 2.0 * math.sqrt(values[mass] * values[stiffness])
         factor = 1.0 + rng.sign() * rng.power(-16.0, -3.0)
@@ -148,7 +141,6 @@ def make_resonant(rng: Chance, values: Values) -> None:
 
 
 def make_cubic_input(rng: Chance, values: Values) -> None:
-    """Change the box accelerations to cubics of many scales."""
     for name in ("box_acceleration", "box_jerk", "box_snap", "box_crackle"):
         values[name] = rng.perhaps() * rng.sign() * rng.power(-12.0, 2.0)
     if rng.random() < 0.5:
@@ -165,7 +157,6 @@ def make_long_chattering(rng: Chance, values: Values) -> None:
 
 
 def make_far_drive(rng: Chance, values: Values) -> None:
-    """Change the drive's frequency to far from the natural frequencies."""
     values["box_frequency"] = rng.one_of(rng.power(0.5, 3.0), rng.power(-12.0, -1.0))
     values["box_amplitude"] = rng.power(-3.0, 1.0) / (values["box_frequency"] + 0.01) ** 2
 

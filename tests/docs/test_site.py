@@ -24,7 +24,6 @@ def site(exported, tmp_path_factory):
 
 
 def built(folder):
-    """Build it."""
     place = folder / "html"
     command = [sys.executable, "-m", "sphinx", "-q", "-W", "-n", "--keep-going", DOCS, place]
     done = subprocess.run(command, capture_output=True, text=True)

@@ -75,7 +75,6 @@ def numbers(value, text):
 
 
 def is_text(node):
-    """Whether a sum joins texts or lists."""
     kinds = (ast.JoinedStr, ast.List, ast.Tuple)
     texts = (isinstance(getattr(one, "value", None), str) for one in (node.left, node.right))
     return any(texts) or isinstance(node.left, kinds) or isinstance(node.right, kinds)

@@ -308,7 +308,6 @@ def test_what_is_no_number_is_refused_by_its_name(name):
 
 
 def recorded(**changes):
-    """A short record, or one with other channels."""
     made = xr.Dataset({"box_acceleration": ("time", np.sin(RECORDED))}, {"time": RECORDED})
     made = made.assign(acceleration1=("time", np.cos(RECORDED))).assign_attrs(sample_rate=100.0)
     return made.assign({name: ("time", value) for name, value in changes.items()})
@@ -337,7 +336,6 @@ def asked(name, *given, **question):
 
 
 def curve(**changes):
-    """A resonance curve, but for some of it."""
     return lambda: orchestrate.resonance_curve(**{**CURVE, **changes})
 
 

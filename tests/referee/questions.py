@@ -42,12 +42,10 @@ class Draw:
         return self.ends[0] * float(self.system.drive.volts(self.system.structure))
 
     def halves(self) -> o.Structure:
-        """Draw two halves, as of a beam in the laboratory."""
         f1, m1, e = (float(self.rng.uniform(*ends)) for ends in ((27, 33), (1, 2), (0.3, 0.8)))
         return o.Structure.from_halves(m1=m1, m2=1.2, f1=f1, f2=38.0, zeta1=0.02, zeta2=0.02, e=e)
 
     def excitation(self) -> Any:
-        """Return one of the excitations of the laboratory."""
         return (
             o.SweptSine(first=26.0, last=42.0, duration=2.0, acceleration=5.0),
             o.SteppedSine(frequencies=(30.0, 34.0), acceleration=5.0, settle_cycles=5),
@@ -63,7 +61,6 @@ class Draw:
         return o.measure(history, o.Sensor(bandwidth=250.0, sample_rate=600.0), excitation=sweep)
 
     def record(self, duration: float = 4.0) -> xr.Dataset:
-        """Return a record with noise of 2 %."""
         felt, channels = self.felt(duration), {}
         for name in ("box_acceleration", "acceleration1", "acceleration2"):
             values = felt[name].values
@@ -72,7 +69,6 @@ class Draw:
         return o.record(time=felt.time.values, **channels)
 
     def written(self) -> xr.Dataset:
-        """Return a record that was written to a file and read again."""
         with tempfile.TemporaryDirectory() as folder:
             return o.read_record(o.write_record(self.record(), Path(folder) / "record.unv"))
 
@@ -97,7 +93,6 @@ class Draw:
 
 
 def ask_border(q: Draw) -> xr.Dataset:
-    """Follow the first bifurcation of a branch for a few points."""
     structure, start = q.window()
     limits = ((2.3, 3.4), (0.6, 0.8))
     return o.border(structure, start=start, bifurcation=0, limits=limits, most=3, progress=False)

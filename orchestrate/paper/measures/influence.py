@@ -33,7 +33,6 @@ def check_periodic_and_irregular_interchange(data: Datasets, claim: Claim) -> Me
 
 
 def find_extrema_at_natural_frequencies(data: Datasets, claim: Claim) -> Measured:
-    """Look for extrema of the largest gap near the halves' natural frequencies."""
     gaps, texts, parts = data.up_sweep("elastic").xi_rel_max, [], []
     for eta in (1.0, 1.095):
         change = np.diff(np.log(gaps.sel(eta=slice(eta - 0.0105, eta + 0.0105)).values))
@@ -79,7 +78,6 @@ def count_coexisting_attractors(data: Datasets, claim: Claim) -> Measured:
 
 
 def measure_share_without_period(data: Datasets, claim: Claim) -> Measured:
-    """Measure how many responses from 1.07 to 1.37 do not repeat."""
     n = reading.between(data.settled_responses("elastic"), 1.07, 1.367).multiplicity.values
     text = (
         f"at {100 * np.mean(n == 0):.0f} % of the frequencies impacts do not repeat; at "
@@ -136,7 +134,6 @@ def count_irregular_by_region(data: Datasets, claim: Claim) -> Measured:
 
 
 def count_hidden_impact_numbers(data: Datasets, claim: Claim) -> Measured:
-    """Count the numbers of impacts that T-periodic responses have."""
     kinds = np.unique([run.impacts for run in reading.impact_runs(data.up_sweep("elastic"))] or [0])
     text = (
         f"T-periodic responses, one line each in Figure 6, have {kinds.min()} to {kinds.max()} "
@@ -146,7 +143,6 @@ def count_hidden_impact_numbers(data: Datasets, claim: Claim) -> Measured:
 
 
 def find_peak_of_closing_velocity(data: Datasets, claim: Claim) -> Measured:
-    """Find the frequency of the largest closing velocity."""
     speed = data.impact_statistics("elastic").closing_max
     eta = float(speed.idxmax())
     text = f"largest closing velocity {float(speed.max()):.2f} at {eta:.3f}"
@@ -170,7 +166,6 @@ def measure_decay_between_peaks(data: Datasets, claim: Claim) -> Measured:
 
 
 def compare_with_single_oscillator(data: Datasets, claim: Claim) -> Measured:
-    """Compare amplitudes at the peaks and at 8.0 with those of both masses as one oscillator."""
     up, case = data.up_sweep("elastic"), CASES["elastic"]
     stiffness = (1.0 + case.kappa) / (1.0 + case.mu)
     text, away = [], []

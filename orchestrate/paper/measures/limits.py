@@ -65,7 +65,6 @@ def edges_of_orbit(sweep: xr.Dataset, orbit: str, inside: float) -> tuple[Edges,
 
 
 def find_peak_height(data: Datasets, claim: Claim, case: str, digits: float) -> Measured:
-    """Find the largest gap of an up-sweep."""
     largest = float(data.up_sweep(case).xi_rel_max.max())
     return Measured(f"{largest:.{int(digits)}f}", [claim.is_rounded_to_printed(largest)])
 

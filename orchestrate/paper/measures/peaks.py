@@ -12,7 +12,6 @@ SAME_ORDER = 10.0**0.5  # two numbers within such a factor are of the same order
 
 
 def peak_eta(data: Datasets, case: str) -> float:
-    """Return the eta at which a case's up-sweep has its largest gap."""
     return float(data.up_sweep(case).xi_rel_max.idxmax())
 
 
@@ -43,7 +42,6 @@ def ratios_to_elastic(data: Datasets, case: str) -> tuple[float, float, str]:
 
 
 def find_largest_amplitudes_and_impulses(data: Datasets, claim: Claim) -> Measured:
-    """Find where amplitudes of both masses and impulses are largest."""
     text, parts = [], []
     for case in CASES:
         up, eta = data.up_sweep(case), peak_eta(data, case)
@@ -59,7 +57,6 @@ def find_largest_amplitudes_and_impulses(data: Datasets, claim: Claim) -> Measur
 
 
 def count_impacts_at_peaks(data: Datasets, claim: Claim) -> Measured:
-    """Count impacts and periods of the responses at the peaks."""
     etas = {case: peak_eta(data, case) for case in CASES}
     rows = (data.impact_statistics(case).sel(eta=etas[case], method="nearest") for case in etas)
     counts = [float(row.impacts) for row in rows]
@@ -70,12 +67,10 @@ def count_impacts_at_peaks(data: Datasets, claim: Claim) -> Measured:
 
 
 def compare_damped_with_elastic(data: Datasets, claim: Claim) -> Measured:
-    """Compare impulses and amplitudes of the damped case with the elastic one's."""
     impulse, size, text = ratios_to_elastic(data, "damped")
     return Measured(text, [impulse < 1 / SAME_ORDER, size < 1 / SAME_ORDER])
 
 
 def compare_plastic_with_elastic(data: Datasets, claim: Claim) -> Measured:
-    """Compare impulses of the plastic case with the elastic one's."""
     impulse, _, text = ratios_to_elastic(data, "plastic")
     return Measured(text, [1 / SAME_ORDER < impulse < SAME_ORDER])

@@ -94,7 +94,6 @@ def count_impacts_up_to_the_peak(data: Datasets, claim: Claim) -> Measured:
 
 
 def compare_spectral_lines(data: Datasets, claim: Claim) -> Measured:
-    """Compare spectral lines above the excitation's, bonded and delaminated (Figure 3)."""
     shown = data.spectra().acceleration.sel(mass=1).isel(eta=0)
     above = shown.where(shown.order > 1.5, drop=True)
     kinds = ("bonded", "delaminated")

@@ -64,7 +64,6 @@ def count_loops_of_masses(data: Datasets, claim: Claim) -> Measured:
 
 
 def count_self_crossings(x: np.ndarray, y: np.ndarray) -> int:
-    """Return how often a closed polygon crosses itself."""
     points = x + 1j * y
     begin, piece = points[:-1], np.diff(points)
     count = 0
@@ -208,7 +207,6 @@ def measure_share_with_one_impact(data: Datasets, claim: Claim) -> Measured:
 
 
 def measure_times_between_impacts(data: Datasets, claim: Claim) -> Measured:
-    """Measure the times between impacts at the windows' relative peaks."""
     up, texts, parts = data.up_sweep("elastic"), [], []
     for n in range(1, 4):
         eta = reading.relative_peak_eta(up, n)
@@ -229,7 +227,6 @@ def find_relative_peaks(data: Datasets, claim: Claim) -> Measured:
 
 
 def find_further_irregular_regions(data: Datasets, claim: Claim) -> Measured:
-    """Find the further irregular regions, each between two windows."""
     up = data.up_sweep("elastic")
     edges = reading.window_edges(up)[1:]
     text = "; ".join(
@@ -242,7 +239,6 @@ def find_further_irregular_regions(data: Datasets, claim: Claim) -> Measured:
 def measure_share_t_periodic(
     data: Datasets, claim: Claim, case: str, low: float, high: float
 ) -> Measured:
-    """Measure the share of T-periodic responses between two frequencies."""
     part = reading.between(data.up_sweep(case), low, high)
     share = float(np.mean(part.multiplicity.values == 1))
     return Measured(f"{100 * share:.1f} % of {part.sizes['eta']} frequencies", [share == 1.0])
@@ -301,7 +297,6 @@ def find_damping_for_one_impact(data: Datasets, claim: Claim) -> Measured:
 
 
 def measure_irregular_share_when_damped(data: Datasets, claim: Claim) -> Measured:
-    """Measure what of both irregular regions is left in the damped case."""
     regions = (0.48, 1.37), (2.61, 3.77)
     shares, texts = [], []
     for low, high in regions:
@@ -312,7 +307,6 @@ def measure_irregular_share_when_damped(data: Datasets, claim: Claim) -> Measure
 
 
 def compare_contact_ranges(data: Datasets, claim: Claim) -> Measured:
-    """Compare the ranges of permanent contact for e = 0.7 and 0.3."""
     sweeps = (data.up_sweep(case) for case in ("elastic", "plastic"))
     contact = ((up, up.permanent_contact.values == 1) for up in sweeps)
     ends = [reading.edges_of_run_around(up, flags, 0.40)[1][0] for up, flags in contact]
@@ -321,7 +315,6 @@ def compare_contact_ranges(data: Datasets, claim: Claim) -> Measured:
 
 
 def compare_windows_over_restitution(data: Datasets, claim: Claim) -> Measured:
-    """Measure how far the windows' exact limits move between e = 0.7 and 0.3."""
     low = {"T, contact": 0.4, "T/2": 1.05}
     texts, moved = [], {}
     for orbit, inside in {**low, "T/1": 2.0, "2T/1": 4.2, "3T/1": 6.3, "4T/1": 8.0}.items():

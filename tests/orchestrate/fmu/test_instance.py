@@ -15,7 +15,6 @@ VALUES = ("x1", "x2", "v1", "v2", "x_rel", "x_rel_max", "impact_time", "impact_e
 
 @pytest.fixture
 def instance(any_fmu):
-    """Make an instance in chaotic motion, at t = 100 s."""
     with Instance(any_fmu) as instance:
         instance.initialize(**CHAOS)
         instance.step(0.0, 100.0)

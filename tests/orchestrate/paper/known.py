@@ -38,7 +38,6 @@ def measured(row, data):
 
 
 def verdict(row, data):
-    """The verdict on a claim at the full resolution."""
     return judge(measured(row, data).parts)
 
 

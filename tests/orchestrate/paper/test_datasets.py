@@ -27,7 +27,6 @@ def data(tmp_path):
 
 
 def swept(etas, structure=DAMPED, **more):
-    """A short sweep upwards."""
     settings = {"transient": 60, "samples": 20, **RUNNING, **more}
     return orchestrate.sweep(structure, eta=etas, **settings)
 

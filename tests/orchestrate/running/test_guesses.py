@@ -73,7 +73,6 @@ def test_a_guess_is_stored_for_a_run_that_is_interrupted(tmp_path, monkeypatch):
 
 
 def job(direction: str):
-    """The sweep of the paper's Figure 6 in large steps."""
     etas = np.round(np.arange(0.1, 8.025, 0.05), 3)
     asked = {"structure": Structure.nondimensional(), "eta": etas, "start": None}
     rest = {"transient": 40, "samples": 40, "tolerance": 1e-2, "peak_periods": 8}
