@@ -14,7 +14,7 @@ module               idea
 :mod:`.oscillator`   an oscillator for its loops: starts, states at equal times
 :mod:`.impacts`      the impacts of a motion
 :mod:`.start`        start of a motion; gaps of states
-:mod:`.channel`      fast calls on one instance, for co-simulation masters
+:mod:`.channel`      an instance as a co-simulation master has it
 :mod:`.c_library`    C libraries of the package: found, or compiled
 :mod:`.webassembly`  the kernels for web pages: found, or compiled
 ===================  =================================================================

@@ -1,7 +1,6 @@
-"""Fast set and get of one FMU instance, and what its answers to the steps of a loop mean.
+"""One FMU instance as a co-simulation master has it, and what its answers to steps mean.
 
-Preallocated arrays, one call for many variables. Only Real variables. Both FMI versions. A step's
-answer:
+A step's answer:
 
 - OK: the run continues; after a warning, too, whose message :attr:`Instance.warnings` keeps.
 - The FMU ends the simulation (FMI 3.0: ``terminateSimulation``; 2.0: a discarded step, of which
@@ -13,9 +12,8 @@ answer:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from ctypes import Structure, byref, c_bool, c_double, c_void_p
-from math import isfinite
 from typing import Any
 
 from ..errors import FmuError
@@ -46,38 +44,18 @@ class StepAnswer(Structure):
 
 
 class Channel:
-    """Fast set and get of an FMU instance, with fixed lists of variables."""
+    """Set and get of an FMU instance's Real variables, with fixed lists of names."""
 
     def __init__(self, instance: Instance, inputs: Sequence[str], outputs: Sequence[str]) -> None:
-        self.instance = instance
+        self.instance, self.inputs, self.outputs = instance, inputs, outputs
         self.answer = StepAnswer()
         self.ended = ""  # at what time, and why, the FMU ended the simulation
-        self._fmu = instance._fmu
         self.kept = c_void_p()  # handle of the state that compiled code keeps
-        dll, is_fmi3 = self._fmu.dll, instance.is_fmi3
-        self._set = dll.fmi3SetFloat64 if is_fmi3 else dll.fmi2SetReal
-        self._read = dll.fmi3GetFloat64 if is_fmi3 else dll.fmi2GetReal
-        self._free = dll.fmi3FreeFMUState if is_fmi3 else dll.fmi2FreeFMUstate
-        self._inputs: Any = (c_double * len(inputs))()
-        self._outputs: Any = (c_double * len(outputs))()
-        sent, read = value_references(instance, inputs), value_references(instance, outputs)
-        self._names = outputs
-        self._puts = [self._arguments(sent, n, self._inputs) for n in range(len(inputs) + 1)]
-        self._gets = self._arguments(read, len(outputs), self._outputs)
-
-    def _arguments(self, references: Any, count: int, values: Any) -> tuple[Any, ...]:
-        """Return the arguments of a set or get function; for FMI 3.0 with the number of values."""
-        sizes = (count,) if self.instance.is_fmi3 else ()
-        return (self._fmu.component, references, count, values, *sizes)
-
-    def _call(self, function: Callable[..., int], *arguments: Any) -> None:
-        self.clear_messages()
-        if status := function(*arguments):
-            self.instance.check_status(getattr(function, "__name__", "a call"), status)
 
     def input_and_output_references(self) -> tuple[Any, Any]:
         """Return the value references of the inputs, and of the outputs, as C arrays."""
-        return self._puts[-1][1], self._gets[1]
+        inputs, outputs = self.inputs, self.outputs
+        return value_references(self.instance, inputs), value_references(self.instance, outputs)
 
     def clear_messages(self) -> None:
         """Clear the FMU's log messages before a new call, so that an error shows only its own."""
@@ -85,17 +63,11 @@ class Channel:
 
     def set_inputs(self, *values: float) -> None:
         """Set the FMU's inputs in the order of the constructor; fewer values: the first ones."""
-        count = len(values)
-        self._inputs[:count] = values
-        self._call(self._set, *self._puts[count])
+        self.instance.set(**dict(zip(self.inputs, values, strict=False)))
 
     def get_outputs(self) -> list[float]:
         """Return the FMU's outputs in the order of the constructor; raise unless all are finite."""
-        self._call(self._read, *self._gets)
-        values: list[float] = self._outputs[:]
-        if not isfinite(sum(values)) and not all(map(isfinite, values)):
-            raise self.instance.not_finite_error(self._names, values)
-        return values
+        return self.instance.get(*self.outputs)
 
     def check_step(self, status: int, whole: bool) -> None:
         """Raise unless a step went well by this module's rule; note in ``ended`` if it is the last.
@@ -104,10 +76,8 @@ class Channel:
         """
         answer, name = self.answer, self.instance.description.name
         texts = [self.instance.logged_messages()]
-        if answer.terminate and self.instance.logged_messages(
-            ERROR
-        ):  # pythonfmu's answer to an exception
-            raise self.instance.error_from_log("")
+        if answer.terminate and self.instance.logged_messages(ERROR):
+            raise self.instance.error_from_log("")  # pythonfmu's answer to an exception
         if answer.terminate:
             texts = [f"the FMU {name} ended the simulation at t = {answer.last:.6g} s", *texts]
             self.ended = ": ".join(filter(None, texts))
@@ -126,5 +96,6 @@ class Channel:
     def close(self) -> None:
         """Free the kept state; an FMU without states is not asked to."""
         if self.kept:
-            self._call(self._free, self._fmu.component, byref(self.kept))
+            free = "fmi3FreeFMUState" if self.instance.is_fmi3 else "fmi2FreeFMUstate"
+            self.instance.prepare_call(free, byref(self.kept))()
             self.kept = c_void_p()

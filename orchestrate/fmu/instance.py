@@ -192,7 +192,7 @@ class Instance:
     def variable(self, name: str) -> Any:
         return self.description.variable(name)
 
-    def set(self, **values: float) -> None:
+    def set(self, /, **values: float) -> None:
         names = ("Set", *values)
         new_values = list(values.values())
         for call, array, positions in self._transfers.get(names) or self._prepare_transfers(names):
