@@ -66,7 +66,6 @@ class Instance:
         self.description = describe(path)
         self._messages: list[tuple[int, str]] = []  # of the last call: status and text
         self.warnings: dict[str, None] = {}  # texts of all calls that answered a warning, in order
-        self._readers: dict[tuple[str, ...], tuple[Transfer, NDArray[np.float64]]] = {}
         self._transfers: dict[tuple[str, ...], list[Transfer]] = {}
         self._addresses: dict[str, int] = {}  # of FMI's functions, as far as they are known
         self.cache: dict[object, Any] = {}  # what callers prepare once for this instance
@@ -218,9 +217,9 @@ class Instance:
     def _prepare_transfers(self, names: tuple[str, ...]) -> list[Transfer]:
         """Prepare an FMI call per data type for variables; the first name: ``Set``/``Get``."""
         verb, *variables = names
-        found = [(self.variable(name), 1) for name in variables]
+        found = [self.variable(name) for name in variables]
         positions: dict[str, list[int]] = {}
-        for position, (variable, _) in enumerate(found):
+        for position, variable in enumerate(found):
             positions.setdefault(variable.type, []).append(position)
         self._transfers[names] = [
             self._prepare_transfer(verb, kind, [found[i] for i in indices], indices)
@@ -229,35 +228,29 @@ class Instance:
         return self._transfers[names]
 
     def _prepare_transfer(
-        self, verb: str, kind: str, variables: Sequence[tuple[Any, int]], positions: list[int]
+        self, verb: str, kind: str, variables: Sequence[Any], positions: list[int]
     ) -> Transfer:
         """Prepare one FMI set or get call for variables of one type; return it with its buffer."""
         if kind not in (*REAL_TYPES, *INTEGER_TYPES, "Boolean"):
-            raise FmuError(f"{variables[0][0].name}: is {kind}; expected numbers and Booleans")
+            raise FmuError(f"{variables[0].name}: is {kind}; expected numbers and Booleans")
         flag = c_bool if self.is_fmi3 else c_int
         element: Any = c_double if kind in REAL_TYPES else c_int if kind in INTEGER_TYPES else flag
-        values = (element * sum(length for _, length in variables))()
         count = len(variables)
-        references = (c_uint * count)(*(variable.valueReference for variable, _ in variables))
-        sizes = (c_size_t(len(values)),) if self.is_fmi3 else ()
+        values = (element * count)()
+        references = (c_uint * count)(*(variable.valueReference for variable in variables))
+        sizes = (c_size_t(count),) if self.is_fmi3 else ()
         function = f"fmi{3 if self.is_fmi3 else 2}{verb}{kind}"
         call = self.prepare_call(function, references, c_size_t(count), values, *sizes)
-        if verb == "Get" and kind in REAL_TYPES:
-            call = self._with_finite_check(call, variables, np.ctypeslib.as_array(values))
-        return Transfer(call, values, positions)
+        if verb == "Set" or kind not in REAL_TYPES:
+            return Transfer(call, values, positions)
+        numbers = np.ctypeslib.as_array(values)
 
-    def _with_finite_check(
-        self, call: Prepared, variables: Sequence[tuple[Any, int]], values: NDArray[np.float64]
-    ) -> Prepared:
-        """Return a call of which values that are not finite are an error too."""
-
-        def run() -> None:
+        def call_and_check() -> None:
             call()
-            if not math.isfinite(values.sum()) and not np.isfinite(values).all():
-                names = [variable.name for variable, length in variables for _ in range(length)]
-                raise self.not_finite_error(names, values)
+            if not math.isfinite(numbers.sum()) and not np.isfinite(numbers).all():
+                raise self.not_finite_error([variable.name for variable in variables], numbers)
 
-        return run
+        return Transfer(call_and_check, values, positions)
 
     def not_finite_error(self, names: Sequence[str], values: ArrayLike) -> FmuError:
         index = int(np.flatnonzero(~np.isfinite(values))[0])
@@ -279,24 +272,8 @@ class Instance:
         self._step()
 
     def read(self, *names: str) -> NDArray[np.float64]:
-        """Return all values of Real variables or arrays, concatenated, by one FMI call."""
-        transfer, values = self._prepare_reader(names)
-        transfer.call()
-        return values
-
-    def value_count(self, *names: str) -> int:
-        """Return how many values :meth:`read` returns for these names."""
-        return len(self._prepare_reader(names)[1])
-
-    def _prepare_reader(self, names: tuple[str, ...]) -> tuple[Transfer, NDArray[np.float64]]:
-        if names not in self._readers:
-            elements = [element for name in names for element in self.elements(name)]
-            for variable, _ in elements:
-                if variable.type not in REAL_TYPES:
-                    raise FmuError(f"{variable.name}: is {variable.type}; expected Real variables")
-            transfer = self._prepare_transfer("Get", elements[0][0].type, elements, [])
-            self._readers[names] = transfer, np.ctypeslib.as_array(transfer.values)
-        return self._readers[names]
+        """Return values as :meth:`get` does, as an array."""
+        return np.array(self.get(*names), dtype=float)
 
     def elements(self, name: str) -> list[tuple[Any, int]]:
         """Return the FMI variables behind an (array's) name, each with its number of values."""

@@ -124,15 +124,15 @@ class Oscillator:
         kinds = {name: instance.variable(name).type for name in START_VALUES}
         self.booleans = [name for name, kind in kinds.items() if kind == "Boolean"]
         self.reals = [name for name in kinds if name not in self.booleans]
-        elements = [variable for name in SAMPLE_SERIES for variable, _ in instance.elements(name)]
-        self.capacity = instance.value_count(*SAMPLE_SERIES) // len(SAMPLE_SERIES)
+        parts = [part for name in SAMPLE_SERIES for part in instance.elements(name)]
+        self.capacity = sum(size for _, size in parts) // len(SAMPLE_SERIES)
         self.kept = np.zeros((len(SAMPLE_SERIES), self.capacity))
-        series = (c_uint * len(elements))(*(variable.valueReference for variable in elements))
+        series = (c_uint * len(parts))(*(variable.valueReference for variable, _ in parts))
         self.calls = OscillatorCalls(
             Fmi.from_instance(instance),
             *(value_references(instance, names) for names in (self.reals, self.booleans)),
             *(series, value_references(instance, PEAKS), len(self.reals), len(self.booleans)),
-            *(self.reals.index(START_PARAMETERS[0]), len(elements), self.capacity),
+            *(self.reals.index(START_PARAMETERS[0]), len(parts), self.capacity),
             *(*value_references(instance, READ_VARIABLES), self.kept.ctypes.data),
         )
 
