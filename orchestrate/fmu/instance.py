@@ -80,8 +80,7 @@ class Instance:
             raise InputError(f"{reason}; expected an FMU with a binary for this machine") from None
         self._open = True
         self._start, self._time, self._length = c_double(), c_double(), c_double()
-        prepare = self._prepare_fmi3 if self.is_fmi3 else self._prepare_fmi2
-        self._reset, self._initialize, self._step = prepare()
+        self._prepare_run()
 
     @property
     def is_fmi3(self) -> bool:
@@ -102,25 +101,26 @@ class Instance:
         fmpy.logging.addLoggerProxy(byref(self._callbacks))
         self.call("instantiate", callbacks=self._callbacks, loggingOn=True)
 
-    def _prepare_fmi2(self) -> tuple[Prepared, list[Prepared], Prepared]:
-        no, zero = c_int(0), c_double()  # no tolerance, no end
-        initialize = [
-            self.prepare_call("fmi2SetupExperiment", no, zero, self._start, no, zero),
-            self.prepare_call("fmi2EnterInitializationMode"),
-            self.prepare_call("fmi2ExitInitializationMode"),
-        ]
-        step = self.prepare_call("fmi2DoStep", self._time, self._length, c_int(1))
-        return self.prepare_call("fmi2Reset"), initialize, step
-
-    def _prepare_fmi3(self) -> tuple[Prepared, list[Prepared], Prepared]:
-        no, zero = c_bool(False), c_double()
-        initialize = [
-            self.prepare_call("fmi3EnterInitializationMode", no, zero, self._start, no, zero),
-            self.prepare_call("fmi3ExitInitializationMode"),
-        ]
-        results = [*(byref(c_bool()) for _ in range(3)), byref(c_double())]
-        step = self.prepare_call("fmi3DoStep", self._time, self._length, c_bool(True), *results)
-        return self.prepare_call("fmi3Reset"), initialize, step
+    def _prepare_run(self) -> None:
+        """Prepare the calls that initialise, step and reset; FMI 3.0 needs no setup before."""
+        prefix, flag = ("fmi3", c_bool) if self.is_fmi3 else ("fmi2", c_int)
+        setup = (
+            flag(False),
+            c_double(),
+            self._start,
+            flag(False),
+            c_double(),
+        )  # no tolerance, no end
+        enter, leave = "EnterInitializationMode", "ExitInitializationMode"
+        begin: dict[str, tuple[Any, ...]] = {"SetupExperiment": setup, enter: (), leave: ()}
+        results: list[Any] = []
+        if self.is_fmi3:
+            begin = {enter: setup, leave: ()} | ({"EnterStepMode": ()} if self.EVENTS else {})
+            results = [*(byref(c_bool()) for _ in range(3)), byref(c_double())]
+        self._initialize = [self.prepare_call(f"{prefix}{name}", *begin[name]) for name in begin]
+        self._reset = self.prepare_call(f"{prefix}Reset")
+        step = self._time, self._length, flag(True), *results
+        self._step = self.prepare_call(f"{prefix}DoStep", *step)
 
     def __enter__(self) -> Any:
         return self

@@ -26,10 +26,6 @@ def start_motion(
     start_values = {**structure.parameters(), **state, **excitation.inputs(), "x_rel_max_on": False}
     instance.reset()
     instance.initialize(**{**start_values, **values})
-    if instance.EVENTS:
-        enter = instance.cache.get("enterStepMode") or instance.prepare_call("fmi3EnterStepMode")
-        instance.cache["enterStepMode"] = enter
-        enter()
 
 
 def gaps_of_states(states: NDArray[np.float64], gap_offset: ArrayLike = 0.0) -> NDArray[np.float64]:
