@@ -111,11 +111,11 @@ def main() -> None:
     # all FMUs first: what is written below belongs to their sources
     names = "fmi3", "fmi2-python"
     forms = [[find_or_export(each.model, name).path for name in names] for each in REFERENCES]
-    for reference, (fmu, with_tabulated_fields) in zip(REFERENCES, forms, strict=True):
+    for reference, (fmu, python_fmu) in zip(REFERENCES, forms, strict=True):
         rows = compute_reference_rows(reference, fmu)
         write_reference_files(reference, rows)
         draw_and_save_documentation(reference, fmu, rows)
-        table = variable_tables_as_markdown(with_tabulated_fields)
+        table = variable_tables_as_markdown(python_fmu)
         page = TABLES.read_text(encoding="utf-8")
         TABLES.write_text(replace_variable_table(page, reference, table), encoding="utf-8")
 

@@ -189,8 +189,6 @@ class ChunkSchedule:
 
     def estimate_startable_tasks(self) -> int:
         """Return how many workers could compute chunks of this job now, an estimate."""
-        if self.is_complete:
-            return 0
         longest_gap = max((last - first for first, last in self.untouched_runs()), default=0)
         certain = sum(map(self.can_start_now, self.left.values()))
         return certain + (longest_gap // MIN_GAP if self.job.warmup_items else 0)

@@ -63,11 +63,9 @@ class Job(ABC):
             object.__setattr__(self, name, check(name, getattr(self, name)))
 
     def require_supported_structure(self) -> None:
+        question = self.asked or type(self).__name__
         for field in fields(self):
-            value = getattr(self, field.name)
-            if isinstance(value, Job):
-                value.require_supported_structure()
-            refuse_unsupported_structure(self.asked or type(self).__name__, value, self.family)
+            refuse_unsupported_structure(question, getattr(self, field.name), self.family)
 
     def count(self) -> int:
         return len(self.items())

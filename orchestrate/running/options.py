@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -84,8 +84,11 @@ class RunOptions:
             raise InputError(f"force = {self.force!r}: {text}")
         for name in ("progress", "force", "keep_stale"):
             object.__setattr__(self, name, checked_flag(name, getattr(self, name)))
-        for name, value in self.path_arguments():
-            checked_path(name, value)
+        fmus = self.fmu.values() if isinstance(self.fmu, Mapping) else (self.fmu,)
+        paths = ("store", self.store), *(("fmu", fmu) for fmu in fmus)
+        for name, value in (*paths, ("build_folder", self.build_folder)):
+            if value is not None:
+                checked_path(name, value)
         if self.jobs is not None:
             object.__setattr__(self, "jobs", checked_integer("jobs", self.jobs, 1, MAX_JOBS))
         is_dask_client = hasattr(self.cluster, "get_executor")
@@ -99,12 +102,6 @@ class RunOptions:
     def from_keywords(cls, running: Mapping[str, object]) -> RunOptions:
         refuse_unknown_keywords(running)
         return cls(**running)  # type: ignore[arg-type]
-
-    def path_arguments(self) -> Iterator[tuple[str, object]]:
-        fmus = self.fmu.values() if isinstance(self.fmu, Mapping) else (self.fmu,)
-        every = [("store", self.store), *(("fmu", fmu) for fmu in fmus)]
-        every.append(("build_folder", self.build_folder))
-        yield from ((name, value) for name, value in every if value is not None)
 
     @property
     def worker_count(self) -> int:
