@@ -197,7 +197,7 @@ def print_comparison_of_solvers(count: int) -> None:
         seconds, impacts = seconds + taken, impacts + count_of_impacts
         each = taken / count
         sine = partial(lambda eta, time: -math.sin(eta * time), eta)  # of amplitude 1/eta^2 m
-        solver = sampled_solver.time_simulation_from_rest(PAPER, sine, 10 * TURN / eta)[0] / 10
+        solver = sampled_solver.time_simulation_from_rest(PAPER, sine, 10 * TURN / eta) / 10
         ratios = time_periods_in_pure_python(python, eta, 30) / 30 / each, solver / each
         row = (eta, each * 1e6, taken / max(count_of_impacts, 1) * 1e9, *ratios)
         print("".join(f"{value:12.4g}" for value in row), flush=True)

@@ -297,11 +297,11 @@ class Datasets:
 ALIKE = ((1, 1), (2, 2), (2, 2.2))  # mu, kappa
 
 
-def index_of_most_even_shares(data: xr.Dataset, min_difference: float = 0.2) -> int:
+def index_of_most_even_shares(data: xr.Dataset) -> int:
     """Return the index of the eta at which two periodic attractors share starts most evenly."""
     frequent = np.argsort(-data.share.values, axis=1, kind="stable")[:, :2]
     names = "share", "impacts_per_period", "multiplicity"
     share, impacts, n = (np.take_along_axis(data[x].values, frequent, axis=1) for x in names)
-    clear = (n > 0).all(axis=1) & (np.abs(impacts[:, 0] - impacts[:, -1]) > min_difference)
+    clear = (n > 0).all(axis=1) & (np.abs(impacts[:, 0] - impacts[:, -1]) > 0.2)
     least = np.where(clear, share[:, -1], 0.0)
     return int((least if least.max() > 0.0 else share[:, -1]).argmax())

@@ -225,12 +225,8 @@ def attack(
     chance: random.Random,
     holder: Path,
     count: int,
-    where: Callable[[], Sequence[str]] = tuple,
 ) -> Iterator[str]:
-    """Do faults in turn, each to a command drawn at random; yield what was wrong.
-
-    `where` returns options that say where the command computes while it is disturbed.
-    """
+    """Do faults in turn, each to a command drawn at random; yield what was wrong."""
     undisturbed: dict[str, Trial] = {}
     start = Trial(["branch", "--eta", "2.6", "--limits", "2.6:2.7"], holder / "start", chance)
     if "border" in names:
@@ -246,10 +242,10 @@ def attack(
             undisturbed[name].seconds = time.monotonic() - begun
         whole = undisturbed[name]
         results = whole.commands.results()
-        folder, options = holder / "trial", [*options, *where()]
-        if wrong := faults[fault](Trial(options, folder, chance, results, whole.seconds)):
+        trial = Trial(options, holder / "trial", chance, results, whole.seconds)
+        if wrong := faults[fault](trial):
             yield f"fault {number} ({fault}, {name}): {wrong}"
-        shutil.rmtree(folder)
+        shutil.rmtree(trial.folder)
 
 
 @pytest.mark.slow

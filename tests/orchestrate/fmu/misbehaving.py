@@ -56,9 +56,7 @@ int fmi3GetFloat64(void *c, const unsigned *r, size_t n, double *values, size_t 
 """
 
 
-def misbehaving(
-    source: Path, target: Path, kind: str, function: str = "fmi3DoStep", first: int = 0
-) -> Path:
+def misbehaving(source: Path, target: Path, kind: str, first: int = 0) -> Path:
     """Copy an FMI 3.0 FMU for Linux with one call that goes wrong.
 
     The kind is one of ``BODIES``, or ``"NaN"``: what all but the ``first`` readings are.
@@ -71,7 +69,7 @@ def misbehaving(
         (binary,) = (name for name in archive.namelist() if name.endswith(".so"))
         (folder / "good.so").write_bytes(archive.read(binary))
     names = exported(folder / "good.so")
-    (folder / "bad.c").write_text(program(names, kind, function, first))
+    (folder / "bad.c").write_text(program(names, kind, first))
     options = ["-shared", "-fPIC", "-O1", "-o", "bad.so", "bad.c", "-ldl"]
     subprocess.run([*command, *options], cwd=folder, check=True)
     with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
@@ -88,8 +86,8 @@ def exported(library: Path) -> list[str]:
     return sorted({name.decode() for name in found})
 
 
-def program(names: list[str], kind: str, function: str, first: int) -> str:
-    wrong = "fmi3GetFloat64" if kind == "NaN" else function
+def program(names: list[str], kind: str, first: int) -> str:
+    wrong = "fmi3GetFloat64" if kind == "NaN" else "fmi3DoStep"
     quoted = ", ".join(f'"{name}"' for name in names)
     parts = [HEAD % (len(names), quoted)]
     parts += [JUMP % (name, 8 * i) for i, name in enumerate(names) if name != wrong]

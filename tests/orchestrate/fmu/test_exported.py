@@ -60,8 +60,8 @@ def places(monkeypatch, tmp_path):
     return folder, shipped
 
 
-def put(source, folder, form="fmi3", model=OSCILLATOR):
-    target = folder / form / f"{model}.fmu"
+def put(source, folder):
+    target = folder / "fmi3" / f"{OSCILLATOR}.fmu"
     target.parent.mkdir(parents=True, exist_ok=True)
     return shutil.copy(source, target)
 

@@ -63,14 +63,14 @@ def test_a_limit_is_read_twice(edges, exact, printed, expected, agrees):
     assert f"exact: {exact:.8f} (fold of T/2)" in found
 
 
-def loops(count, last=0.0):
-    """Flights and impacts in turn; the last impact parts with ``last``, contact follows."""
+def loops(count):
+    """Flights and impacts in turn; contact follows the last."""
     rows = []
     for number in range(count):
-        rate = 0.7 if number < count - 1 else last
+        rate = 0.7 * (number < count - 1)
         rows.append((number + 0.5, 1, 0, FLIGHT))
         rows += [(number + 1, 0, speed, FLIGHT) for speed in (-1, rate)]
-    rows[-1] = (count, 0, last, CONTACT)
+    rows[-1] = (count, 0, 0, CONTACT)
     rows += [(count + 1, 0, 0, CONTACT), (count + 2, 0.5, 0.5, FLIGHT)]
     tau, gap, rate, kind = np.array(rows, dtype=float).T
     state = np.column_stack([0 * gap, gap, 0 * gap, rate])

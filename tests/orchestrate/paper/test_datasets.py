@@ -16,7 +16,6 @@ from orchestrate.running.options import Running
 
 pytestmark = pytest.mark.usefixtures("exported")
 RUNNING = {"jobs": 1, "progress": False}
-DAMPED = CASES["damped"]
 
 
 @pytest.fixture
@@ -24,11 +23,6 @@ def data(tmp_path):
     """Datasets of few periods, the damped case in place of all sweeps."""
     stages = {"stages": (0, 4500), "skip": 5, "keep": 2, "transient": 500, "samples": 39}
     return Datasets(tmp_path, replace(QUICK, **stages), RUNNING)
-
-
-def swept(etas, structure=DAMPED, **more):
-    settings = {"transient": 60, "samples": 20, **RUNNING, **more}
-    return orchestrate.sweep(structure, eta=etas, **settings)
 
 
 def test_questions_are_such_as_their_functions_take(data):
@@ -52,7 +46,8 @@ def test_questions_are_such_as_their_functions_take(data):
 def test_a_response_is_run_on_until_it_repeats(data):
     """At D = 0.05 T/1 is unstable at 1.116, which 500 periods from 1.115 do not see."""
     etas = np.round(np.arange(1.101, 1.1165, 0.0015), 4)
-    data.sweep = lambda *_: swept(etas, transient=500, samples=40)
+    asked = {"eta": etas, "transient": 500, "samples": 40, **RUNNING}
+    data.sweep = lambda *_: orchestrate.sweep(CASES["damped"], **asked)
     found, before = data.settled_responses("damped"), data.up_sweep("damped")
     assert before.multiplicity.values[-1] == 1
     assert found.eta.values.tolist() == [1.101, 1.1085, 1.116]
