@@ -9,6 +9,7 @@ guess of chunk i is stored under ``~i``, with its start, for a run that is inter
 
 from __future__ import annotations
 
+import functools
 import logging
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -67,7 +68,7 @@ class ChunkSchedule:
         self.under_way: set[int] = set()
         self._ends: dict[int, Table] = {}  # last entries of the last chunks that are certain
         self.wasted = 0  # items that were guessed in vain
-        self.items: Sequence[Any] | None = None
+        self.finish_if_done()  # of a run that was interrupted as it finished
 
     def load_stored_chunks(self) -> set[int]:
         """Return the numbers of stored chunks that fit this job; delete others, load guesses."""
@@ -110,10 +111,10 @@ class ChunkSchedule:
     def item_count(self, index: int) -> int:
         return self.chunks[index].stop - self.chunks[index].start
 
-    def make_items_or_finish(self) -> None:
-        """Make the job's items; where all chunks are stored, make its result in their place."""
-        self.items = self.job.items()
-        self.finish_if_done()
+    @functools.cached_property
+    def items(self) -> Sequence[Any]:
+        """The job's items, made when the first of them is computed."""
+        return self.job.items()
 
     # -- what may be computed next ----------------------------------------------------------------
 
@@ -183,7 +184,6 @@ class ChunkSchedule:
         self, chunk: Chunk, previous: Table | None, guess: bool = False, warmup: int = 0
     ) -> Task:
         """Return the task of a chunk; ``warmup``: how many items before it are computed first."""
-        assert self.items is not None, "items not made"
         before = self.items[chunk.start - warmup : chunk.start] if warmup else ()
         return Task(chunk, self.items[chunk.start : chunk.stop], previous, before, guess)
 
@@ -239,7 +239,7 @@ class ChunkSchedule:
         self.result = self.store.finish(
             with_provenance(self.job.dataset(self.joined_table()), *about)
         )
-        self.items = None
+        self.__dict__.pop("items", None)
 
     def joined_table(self) -> Table:
         last = len(self.chunks) - 1

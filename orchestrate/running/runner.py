@@ -104,7 +104,9 @@ class Runner:
         return all(schedule.is_complete for schedule in self.schedules.values())
 
     def compute_all(self) -> None:
-        with self.make_bar() as bar:
+        unit = self.jobs[0].item if len(self.jobs) == 1 else "item"
+        counts = {"total": self.progress_total(), "initial": self.items_done()}
+        with progress_bar(self.bar_label(), self.options.progress, **counts, unit=unit) as bar:
             if not (self.options.cluster or self.foreign):
                 inline = nullcontext(Workers(InlineExecutor(), lambda: 1))
                 with thread_workers(1) if self.in_threads else inline as workers:
@@ -142,13 +144,8 @@ class Runner:
         return seconds < MIN_PARALLEL_SECONDS or self.count_usable_workers() < 2
 
     def count_usable_workers(self) -> int:
-        ready = filter(self.make_ready, self.schedules.values())
-        return sum(schedule.estimate_startable_tasks() for schedule in ready)
-
-    def make_bar(self) -> Any:
-        unit = self.jobs[0].item if len(self.jobs) == 1 else "item"
-        shown, total, done = self.options.progress, self.progress_total(), self.items_done()
-        return progress_bar(self.bar_label(), shown, total=total, initial=done, unit=unit)
+        unfinished = (one for one in self.schedules.values() if not one.is_complete)
+        return sum(schedule.estimate_startable_tasks() for schedule in unfinished)
 
     def bar_label(self) -> str:
         return self.jobs[0].name if len(self.jobs) == 1 else f"{len(self.jobs)} results"
@@ -187,7 +184,7 @@ class Runner:
 
     def submit_tasks(self, workers: Workers, fmus: Mapping[str, Path | bytes]) -> None:
         for schedule in self.schedules.values():
-            while len(self.futures) < workers.max_in_flight() and self.make_ready(schedule):
+            while len(self.futures) < workers.max_in_flight() and not schedule.is_complete:
                 # nothing that is sure waits behind a guess
                 task = schedule.next_task(len(self.futures) + 1 < workers.max_in_flight())
                 if task is None:
@@ -200,14 +197,6 @@ class Runner:
                 )
                 future = workers.executor.submit(compute_chunk, *call)
                 self.futures[future] = schedule, task
-
-    def make_ready(self, schedule: ChunkSchedule) -> bool:
-        """Make a job's items where they are missing; return whether it has chunks to compute."""
-        if schedule.is_complete:
-            return False
-        if schedule.items is None:
-            schedule.make_items_or_finish()
-        return not schedule.is_complete
 
 
 def import_xarray() -> None:

@@ -25,7 +25,6 @@ def play(schedule: ChunkSchedule, workers: int, seed: int, stop: int = -1) -> No
     """Compute a job, or so many chunks of it, as if by workers that end in a random order."""
     draw, busy = random.Random(seed), []
     fmus = {model: fmu.path for model, fmu in schedule.fmus.items()}
-    schedule.make_items_or_finish()
     while not schedule.is_complete and stop != 0:
         while len(busy) < workers and (task := schedule.next_task()) is not None:
             schedule.under_way.add(task.chunk.index)
@@ -56,7 +55,6 @@ def test_a_guess_is_stored_for_a_run_that_is_interrupted(tmp_path, monkeypatch):
     path = tmp_path / "job.nc"
     store = open_store("job", {}, RunOptions(store=path))
     schedule = ChunkSchedule(Forgetful("job"), store, {}, MODELS)
-    schedule.make_items_or_finish()
     certain = schedule.next_task()
     schedule.under_way.add(certain.chunk.index)
     guess = schedule.next_task()
