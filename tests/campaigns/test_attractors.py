@@ -116,10 +116,6 @@ class ReportedMotion:
         if min(self.distance(row, self.state) for row in orbit.state.values) > DIFFERS:
             yield "orbit: another one"
 
-    def is_same(self, other: "ReportedMotion") -> bool:
-        """Return whether another motion has a state of this one at phase 0."""
-        return any(self.distance(row, other.state) < DIFFERS for row in self.states)
-
 
 def problems(
     fmu: Path, structure: Structure, etas: Sequence[float], seed: int, counts: Counter[str]
@@ -138,7 +134,8 @@ def problems(
                 continue
             motion, where = ReportedMotion(fmu, structure, eta, reported), f"eta {eta:.6g}"
             yield from (f"{where}, attractor {attractor}: {line}" for line in motion.problems())
-            if any(motion.is_same(other) for other in motions):
+            pairs = ((row, other.state) for other in motions for row in motion.states)
+            if any(motion.distance(*pair) < DIFFERS for pair in pairs):
                 yield f"{where}, attractor {attractor}: is there twice"
             motions.append(motion)
 

@@ -30,16 +30,11 @@ def changes(source):
     indices = {id(part) for node in ast.walk(tree) for part in subscripts(node)}
     nodes = [node for node in ast.walk(tree) if id(node) not in indices]
     edits = sorted({edit for node in nodes for edit in edits_of(node, lines)})
-    fields = threshold_lines(tree)
+    classes = (one for one in ast.walk(tree) if isinstance(one, ast.ClassDef))
+    settings = (one for it in classes if it.name.endswith("Settings") for one in it.body)
+    fields = {one.lineno for one in settings if isinstance(one, ast.AnnAssign) and one.value}
     found = (broken_by(edit, lines, edit[0] in fields) for edit in edits)
     return {(one.text, one.broken): one for one in found}.values()
-
-
-def threshold_lines(tree):
-    """Lines of the fields' defaults in classes of settings."""
-    classes = (one for one in ast.walk(tree) if isinstance(one, ast.ClassDef))
-    fields = (one for it in classes if it.name.endswith("Settings") for one in it.body)
-    return {one.lineno for one in fields if isinstance(one, ast.AnnAssign) and one.value}
 
 
 def subscripts(node):
