@@ -37,6 +37,7 @@ NOT_PRIVATE = (
     "can write, or another build_folder; it is not loaded"
 )
 CLONE = Path(__file__).resolve().parents[2]
+current_guid = functools.cache(sources.fmu_guid)
 
 
 def build(
@@ -102,13 +103,6 @@ def export_or_copy(name: str, form: str, folder: Path, platforms: tuple[str, ...
     return write_atomically(path, lambda target: target.write_bytes(shipped))
 
 
-@functools.cache
-def current_guid(form: str, name: str) -> str:
-    """Return the GUID that an FMU of this form and model exported from the present sources has."""
-    require_known(name, form)
-    return sources.fmu_guid(name, form)
-
-
 def require_known(name: str, form: str) -> None:
     if name not in MODELS:
         raise InputError(f"model {name}: expected one of {', '.join(MODELS)}")
@@ -120,7 +114,7 @@ def is_current_and_trusted(form: str, name: str, folder: str | PathLike[str]) ->
     """Whether an FMU is of the present sources; others may not write to the default folder."""
     path = Path(folder) / form / f"{name}.fmu"
     try:
-        current = path.is_file() and describe(path, name).guid == current_guid(form, name)
+        current = path.is_file() and describe(path, name).guid == current_guid(name, form)
     except InputError:  # damaged: to be made again
         return False
     if not current or Path(folder) != default_folder():

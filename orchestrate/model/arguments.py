@@ -82,10 +82,8 @@ def checked_path(name: str, value: Any) -> Path:
 def checked_unmasked(name: str, value: Any) -> Any:
     if np.ma.is_masked(value):
         number, count = int(np.ma.getmaskarray(value).sum()), np.size(value)
-        raise InputError(
-            f"{name}: {number} of {count} entries are masked; expected all to be numbers "
-            "(compressed() leaves masked ones out)"
-        )
+        text = "expected all to be numbers (compressed() leaves masked ones out)"
+        raise InputError(f"{name}: {number} of {count} entries are masked; {text}")
     return value
 
 

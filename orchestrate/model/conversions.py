@@ -50,8 +50,6 @@ def warn_of_ratios_in_per_cent(ratios: Mapping[str, float]) -> None:
     """Warn about damping ratios, by name, so large that per cent was probably meant."""
     for name, ratio in ratios.items():
         if ratio > 0.3:  # damping ratio above which a half of a beam would hardly ring
-            warnings.warn(
-                f"{name} = {ratio:g} is {100.0 * ratio:.4g} % of critical damping: a ratio is "
-                f"meant, {ratio:g} % is {0.01 * ratio:g}",
-                stacklevel=3,
-            )
+            text = f"{name} = {ratio:g} is {100.0 * ratio:.4g} % of critical damping"
+            hint = f"a ratio is meant, {ratio:g} % is {0.01 * ratio:g}"
+            warnings.warn(f"{text}: {hint}", stacklevel=3)

@@ -175,10 +175,8 @@ class Drive(Described):
         points = rated_voltage, no_load_speed, stall_torque
         constant, resistance = motor_constant_and_resistance(*points)
         if (rotor_inertia is None) == (mechanical_time_constant is None):
-            raise InputError(
-                f"rotor_inertia = {rotor_inertia} and mechanical_time_constant = "
-                f"{mechanical_time_constant}: expected one of them"
-            )
+            both = f"{rotor_inertia} and mechanical_time_constant = {mechanical_time_constant}"
+            raise InputError(f"rotor_inertia = {both}: expected one of them")
         if mechanical_time_constant is not None:
             rotor_inertia = mechanical_time_constant * constant**2 / resistance
         assert rotor_inertia is not None

@@ -20,12 +20,9 @@ from ..errors import InputError
 
 Described = TypeVar("Described")
 WRITTEN_UNITS: dict[tuple[str, ...], dict[str, str]] = {  # in texts, over a quantity's own
-    ("clearance", "preload", "stroke", "amplitude", "x1", "x2", "x_rel"): {
-        "mm": "1e-3",
-        "um": "1e-6",
-        "µm": "1e-6",
-        "m": "1",
-    },
+    ("clearance", "preload", "stroke", "amplitude", "x1", "x2", "x_rel"): (
+        {"mm": "1e-3", "um": "1e-6", "µm": "1e-6", "m": "1"}
+    ),
     ("zeta1", "zeta2", "D", "D1", "D2"): {"%": "0.01"},
     ("f1", "f2", "f1_hz", "f2_hz", "hz", "frequency_hz"): {"Hz": "1"},
     ("rpm", "frequency_rpm"): {"rpm": "1"},
@@ -97,8 +94,8 @@ def checked_range(
 ) -> float:
     """Return a finite number from ``low`` to ``high``, of which either end may be left out."""
     number = as_scalar(value)
+    is_number = isinstance(number, numbers.Real) and not isinstance(number, bool)
     try:
-        is_number = isinstance(number, numbers.Real) and not isinstance(number, bool)
         number = float(number) if is_number else math.nan
     except OverflowError:
         number = math.nan
@@ -160,23 +157,16 @@ MECHANICS = oscillator.MECHANICS
 ADDED = (*(variable.name for variable in oscillator.ADDED), "stroke")
 # with one of these a motion is not in proportion to the shaking
 OF_LENGTH = tuple(name for name, quantity in STRUCTURE.items() if quantity.dimension["m"])
-DRIVE = quantities_from_variables(
-    motor_shaker.VARIABLES,
-    (
-        *("box_mass", "box_stiffness", "box_damping"),
-        *("unbalance_mass", "unbalance_radius", "rotor_inertia"),
-        *("motor_constant", "armature_resistance", "armature_inductance"),
-    ),
+OF_DRIVE = (
+    *("box_mass", "box_stiffness", "box_damping", "unbalance_mass", "unbalance_radius"),
+    *("rotor_inertia", "motor_constant", "armature_resistance", "armature_inductance"),
 )
-
-ELECTRODYNAMIC_SHAKER = quantities_from_variables(
-    electrodynamic_shaker.VARIABLES,
-    (
-        *("table_mass", "suspension_stiffness", "suspension_damping"),
-        *("force_factor", "coil_resistance", "coil_inductance"),
-        *("voltage_limit", "current_limit", "travel_limit"),
-    ),
+DRIVE = quantities_from_variables(motor_shaker.VARIABLES, OF_DRIVE)
+OF_SHAKER = (
+    *("table_mass", "suspension_stiffness", "suspension_damping", "force_factor"),
+    *("coil_resistance", "coil_inductance", "voltage_limit", "current_limit", "travel_limit"),
 )
+ELECTRODYNAMIC_SHAKER = quantities_from_variables(electrodynamic_shaker.VARIABLES, OF_SHAKER)
 
 SMALLEST, LARGEST = STRUCTURE["m1"].minimum, STRUCTURE["m1"].maximum
 PUSHES = {  # loads other than the box's harmonic motion, by the FMU's inputs
@@ -184,9 +174,8 @@ PUSHES = {  # loads other than the box's harmonic motion, by the FMU's inputs
     "force1": "force1_amplitude",
     "force2": "force2_amplitude",
 }
-INPUTS = quantities_from_variables(
-    oscillator.VARIABLES, ("box_amplitude", "box_frequency", "phase_start", *PUSHES.values())
-)
+OF_BOX = ("box_amplitude", "box_frequency", "phase_start")
+INPUTS = quantities_from_variables(oscillator.VARIABLES, (*OF_BOX, *PUSHES.values()))
 EXCITATION = {
     quantity.name: quantity
     for quantity in (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -91,7 +92,7 @@ def successive_impact_numbers(data: xr.Dataset) -> list[int]:
 
 def strictly_decreases(numbers: list[int]) -> bool:
     """Return whether each number is less than the one before; there must be two."""
-    return len(numbers) > 1 and all(a > b for a, b in zip(numbers, numbers[1:], strict=False))
+    return len(numbers) > 1 and all(a > b for a, b in itertools.pairwise(numbers))
 
 
 def window_edges(sweep: xr.Dataset) -> list[tuple[Edges, Edges]]:
@@ -103,9 +104,9 @@ def window_edges(sweep: xr.Dataset) -> list[tuple[Edges, Edges]]:
 def are_windows_separated(sweep: xr.Dataset) -> list[bool]:
     """Return of each two successive windows nT whether irregular responses lie between them."""
     edges = window_edges(sweep)
-    gaps = [(a[1][1], b[0][0]) for a, b in zip(edges, edges[1:], strict=False)]
+    gaps = ((a[1][1], b[0][0]) for a, b in itertools.pairwise(edges))
     return [
-        bool((between(sweep, low, high).multiplicity.values == 0).any()) if low <= high else False
+        low <= high and bool((between(sweep, low, high).multiplicity.values == 0).any())
         for low, high in gaps
     ]
 

@@ -22,10 +22,8 @@ def cluster_workers(where: Any, count: int) -> Iterator[Workers]:
     if isinstance(where, str):
         with dask_client(where) as client, dask_workers(client) as workers:
             if not client.ncores():
-                raise InputError(
-                    f"cluster {where}: the scheduler has no workers; "
-                    f"`dask worker {where} --nthreads 1` starts one"
-                )
+                advice = f"`dask worker {where} --nthreads 1` starts one"
+                raise InputError(f"cluster {where}: the scheduler has no workers; {advice}")
             yield workers
     elif isinstance(where, Executor):
         try:
@@ -71,10 +69,8 @@ def dask_client(address: str) -> Iterator[Any]:
             thread.submit(asyncio.run, check_scheduler(address)).result()
         client = connect(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
     except Exception as error:  # of whatever answers there, and however
-        raise InputError(
-            f"cluster {address}: no scheduler answers there ({str(error) or 'silence'}); "
-            "`dask scheduler` starts one"
-        ) from None
+        text = f"no scheduler answers there ({str(error) or 'silence'})"
+        raise InputError(f"cluster {address}: {text}; `dask scheduler` starts one") from None
     try:
         yield client
     finally:

@@ -145,10 +145,8 @@ def write_xlsx(data: xr.Dataset, path: Path) -> list[Path]:
     frames = tables_by_dimensions(data)
     for name, frame in frames.items():
         if len(frame) > MAX_SHEET_ROWS:
-            raise InputError(
-                f"{path}: the table over {name} has {len(frame)} rows, a sheet at most "
-                f"{MAX_SHEET_ROWS}; expected csv, mat or nc"
-            )
+            text = f"the table over {name} has {len(frame)} rows, a sheet at most {MAX_SHEET_ROWS}"
+            raise InputError(f"{path}: {text}; expected csv, mat or nc")
 
     def write_sheets(path_to_write: Path) -> None:
         with path_to_write.open("wb") as file, pd.ExcelWriter(file, engine="openpyxl") as book:

@@ -74,10 +74,8 @@ class Journal:
             self.identity, self.begun = self._read_identity()
         except (sqlite3.Error, OSError, ValueError, KeyError, TypeError) as error:
             self.close()
-            raise StoreError(
-                f"{path}: not usable as a journal ({error}); expected a writable place or a "
-                f"journal of this job: {ANEW}"
-            ) from error
+            expected = f"expected a writable place or a journal of this job: {ANEW}"
+            raise StoreError(f"{path}: not usable as a journal ({error}); {expected}") from error
 
     def _write_identity_if_new(self, identity: str, begun: str) -> None:
         """Write identity, start time and their checksum into a new journal; keep an old one's."""
@@ -165,7 +163,6 @@ def lock_result(path: Path) -> HeldLock:
         advice = "wait for it, or choose another place"
         raise InputError(f"{path}: another process is computing it; {advice}") from None
     except OSError as error:
-        raise StoreError(
-            f"{place}: cannot be made ({error.strerror or error}); expected a writable "
-            "place where no folder or other file of this name is: remove that"
-        ) from error
+        expected = "a writable place where no folder or other file of this name is: remove that"
+        reason = error.strerror or error
+        raise StoreError(f"{place}: cannot be made ({reason}); expected {expected}") from error

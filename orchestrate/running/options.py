@@ -93,10 +93,9 @@ class RunOptions:
             object.__setattr__(self, "jobs", checked_integer("jobs", self.jobs, 1, MAX_JOBS))
         is_dask_client = hasattr(self.cluster, "get_executor")
         if not (is_dask_client or isinstance(self.cluster, (str, Executor, type(None)))):
-            raise InputError(
-                f"cluster = {self.cluster!r}: expected the address of a Dask scheduler, a client "
-                "of it, or an executor of concurrent.futures"
-            )
+            expected = "the address of a Dask scheduler, a client of it, or an executor of"
+            text = f"cluster = {self.cluster!r}: expected {expected} concurrent.futures"
+            raise InputError(text)
 
     @classmethod
     def from_keywords(cls, running: Mapping[str, object]) -> RunOptions:
@@ -123,7 +122,5 @@ def refuse_unknown_keywords(names: Iterable[str], own: Iterable[str] = ()) -> No
     for name in names:
         if name not in known:
             meant = did_you_mean(OF_COMMANDS.get(name) or closest_name(name, known))
-            raise TypeError(
-                f"unexpected keyword argument {name!r}: expected the function's own or one of "
-                f"{', '.join(running)}{meant}"
-            )
+            expected = f"expected the function's own or one of {', '.join(running)}"
+            raise TypeError(f"unexpected keyword argument {name!r}: {expected}{meant}")

@@ -41,10 +41,8 @@ def timestamp() -> str:
     """Return the present time, UTC, as ISO 8601 text; SOURCE_DATE_EPOCH overrides it."""
     fixed = os.environ.get("SOURCE_DATE_EPOCH")
     if fixed and not (re.fullmatch("[0-9]{1,12}", fixed) and int(fixed) <= LAST_SECOND):
-        raise InputError(
-            f"SOURCE_DATE_EPOCH = {fixed!r} in the environment: expected a whole number of seconds "
-            f"since 1970, up to {LAST_SECOND}"
-        )
+        expected = f"expected a whole number of seconds since 1970, up to {LAST_SECOND}"
+        raise InputError(f"SOURCE_DATE_EPOCH = {fixed!r} in the environment: {expected}")
     return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(int(fixed) if fixed else time.time()))
 
 
@@ -250,10 +248,9 @@ def load_result(path: Path, read: Callable[[Path], xr.Dataset] | None = None) ->
         line = printable_line(first_line(error)).removeprefix(f"{path}: ")
         raise StoreError(f"{path}: damaged ({line}); {ANEW}") from error
     if not fits:
-        raise StoreError(
-            f"{path}: its contents do not fit its checksum: damaged, or changed by hand; {ANEW}, "
-            f"or delete its attribute {ATTRIBUTE} to take it as it is"
-        )
+        text = f"{path}: its contents do not fit its checksum: damaged, or changed by hand"
+        advice = f"{ANEW}, or delete its attribute {ATTRIBUTE} to take it as it is"
+        raise StoreError(f"{text}; {advice}")
     return data
 
 
@@ -311,10 +308,8 @@ def read_identity(path: Path) -> Identity:
         identity["question"]  # or it is another's attribute of the same name
         return identity
     except Exception as error:
-        raise StoreError(
-            f"{path}: not a result of this project, or damaged ({first_line(error)}); "
-            f"choose another place, or {ANEW}"
-        ) from error
+        text = f"{path}: not a result of this project, or damaged ({first_line(error)})"
+        raise StoreError(f"{text}; choose another place, or {ANEW}") from error
 
 
 def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
