@@ -1,14 +1,13 @@
 """One setting of units for prints, pictures, tables and pages; datasets stay in SI."""
 
 import re
-from functools import cache
 
 import numpy as np
 import pytest
 import xarray as xr
 
 import orchestrate
-from orchestrate import InputError, Structure
+from orchestrate import InputError
 from orchestrate.show.labels import title_from_attributes
 from orchestrate.show.scales import displayed_gaps
 from orchestrate.units import (
@@ -21,33 +20,16 @@ from orchestrate.units import (
     with_units,
 )
 
+from ..exports import once
+from .test_public_face import OWN, questions
+
 TURN, G = 2.0 * np.pi, 9.80665
-HALVES = {"m1": 1.0, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.02, "zeta2": 0.02}
-BEAM = Structure.from_halves(**HALVES, clearance=-2e-5)
-HERTZ = np.array([44.0, 48.0, 52.0])
-BOX = {"frequency": TURN * 48.0, "amplitude": 3.0 / (TURN * 48.0) ** 2}
-SHORT = {"transient": 20, "samples": 6}
 # units that are not asked for with rpm, um, g
 FOREIGN = re.compile(r"\bHz\b|rad/s|\bmm\b|m/s|\bin m\b|\d m\b|\beta\b|\\eta")
 
 
-@cache
-def answers():
-    """An answer of each kind of axis that the setting is for."""
-    many = {"frequency": TURN * HERTZ, "amplitude": 3.0 / (TURN * HERTZ) ** 2}
-    plane = {"x": ("x_rel", 0.0, 1e-3, 3), "y": ("v_rel", -0.1, 0.1, 3)}
-    levels = {"frequency": TURN * HERTZ, "level": [1.0, 3.0]}
-    return {
-        "simulate": orchestrate.simulate(BEAM, **BOX, periods=5, transient=20),
-        "resonance_levels": orchestrate.resonance_levels(BEAM, **levels, direction="up", **SHORT),
-        "contact_threshold": orchestrate.contact_threshold(BEAM, frequency=TURN * HERTZ),
-        "sweep": orchestrate.sweep(BEAM, **many, **SHORT),
-        "map": orchestrate.map(BEAM, **levels, **SHORT),
-        "spectra": orchestrate.spectra(BEAM, **BOX, transient=20, periods=8),
-        "poincare": orchestrate.poincare(BEAM, **BOX, transient=20, periods=30),
-        "basin": orchestrate.basin(BEAM, **BOX, **plane, **SHORT),
-        "lyapunov": orchestrate.lyapunov(BEAM, **many, transient=20, periods=30),
-    }
+# answers of each kind of axis that the setting is for
+AXES = ("simulate", "resonance levels", "sweep", "map", "spectra", "poincare", "basin", "lyapunov")
 
 
 def words_of(figure):
@@ -94,12 +76,16 @@ def test_numbers_are_divided_by_what_the_unit_says():
     assert display_scale_of(with_units(xr.Dataset(), "eta"), "rad/s") == (1.0, "rad/s")  # no omega
 
 
-def test_pictures_are_in_the_units_asked_for_and_in_no_other():
-    for kind, answer in answers().items():
+def test_pictures_are_in_the_units_asked_for_and_in_no_other(exported, tmp_path_factory):
+    answers = once(tmp_path_factory, "answers", questions)
+    pressed, many = OWN.replace(clearance=-1e-6), OWN.omega * np.linspace(0.9, 1.1, 3)
+    threshold = orchestrate.contact_threshold(pressed, frequency=many)
+    levels = orchestrate.map(pressed, frequency=many, level=[1.0, 3.0], transient=20, samples=6)
+    for answer in (*(answers[kind] for kind in AXES), threshold, levels):
         words = words_of(orchestrate.plot(answer, units="rpm, um, g"))
         foreign = [word for word in words if FOREIGN.search(of_the_structure(word))]
-        assert not foreign, (kind, foreign)
-        assert any("rpm" in word for word in words), kind
+        assert not foreign, (answer.question, foreign)
+        assert any("rpm" in word for word in words), answer.question
 
 
 @pytest.mark.parametrize("over", ["frequency", "force1", "k2"])
