@@ -11,9 +11,8 @@ module               idea
 :mod:`.instance`     a co-simulation instance: set, step, read, save its state
 :mod:`.fmi`          an instance as the compiled loops call it
 :mod:`.events`       a motion computed impact by impact, under inputs given as cubics
-:mod:`.oscillator`   an oscillator for its loops: starts, states at equal times
+:mod:`.oscillator`   an oscillator: its start, its loop, states at equal times, gaps
 :mod:`.impacts`      the impacts of a motion
-:mod:`.start`        start of a motion; gaps of states
 :mod:`.channel`      an instance as a co-simulation master has it
 :mod:`.c_library`    C libraries of the package: found, or compiled
 :mod:`.webassembly`  the kernels for web pages: found, or compiled
@@ -37,14 +36,17 @@ from .impacts import STATE, Impacts
 from .instance import Instance
 from .models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER, OSCILLATOR
 from .oscillator import (
+    REST,
     START_VALUES,
     Oscillator,
+    checked_four_numbers,
+    gaps_of_states,
     respond_library,
     sample_evenly,
     sample_stroboscopically,
+    start_motion,
     traits_for_loops,
 )
-from .start import REST, checked_four_numbers, gaps_of_states, start_motion
 from .webassembly import build_web_kernels
 
 __all__ = [

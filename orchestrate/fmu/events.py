@@ -23,7 +23,7 @@ from .c_library import load_loop
 from .fmi import BROKEN, NOT_FINITE, PAUSED, Fmi, value_references
 from .impacts import EVENT_OUTPUTS, Impacts
 from .instance import Instance
-from .start import REST, start_motion
+from .oscillator import REST, start_motion
 
 Floats = NDArray[np.float64]
 IMPACT_CAPACITY = 1024  # impacts in the buffer that the loop fills

@@ -1,4 +1,4 @@
-"""Calls of ``respond.c``, the compiled loop that drives an oscillator FMU without Python.
+"""An oscillator FMU: its start, and the compiled loop that drives it without Python.
 
 The loop is ``fmu_src/kernels/loops/respond.c``; this module has its structures for ctypes.
 """
@@ -12,9 +12,9 @@ from ctypes import POINTER, byref, c_bool, c_double, c_size_t, c_uint, c_void_p
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from ..errors import FmuError
+from ..errors import NOT_NUMBERS, FmuError, InputError
 from ..model import Excitation, Structure
 from .c_library import load_loop
 from .fmi import NOT_FINITE, Fmi, value_references
@@ -22,6 +22,7 @@ from .impacts import STATE
 from .instance import Instance
 
 Floats = NDArray[np.float64]
+REST = (0.0, 0.0, 0.0, 0.0)
 START_PARAMETERS = tuple(f"{name}_start" for name in STATE)
 SAMPLE_SERIES = tuple(f"{name}_sample" for name in STATE)
 READ_VARIABLES = (
@@ -192,6 +193,42 @@ def traits_for_loops(
     memory = (c_double * len(TRAIT_NAMES))(*numbers, structure.omega, frequency, amplitude, pushed)
     respond_library().rest_and_threshold(memory)
     return memory
+
+
+def start_motion(
+    instance: Instance,
+    structure: Structure,
+    excitation: Excitation,
+    start: ArrayLike = REST,
+    **values: float,
+) -> None:
+    """Reset an oscillator FMU; initialise it at time 0 by structure, excitation and start state."""
+    start_state = relative_to_rest(structure, checked_four_numbers(start))
+    state = dict(zip(START_PARAMETERS, start_state, strict=True))
+    start_values = {**structure.parameters(), **state, **excitation.inputs(), "x_rel_max_on": False}
+    instance.reset()
+    instance.initialize(**{**start_values, **values})
+
+
+def gaps_of_states(states: NDArray[np.float64], gap_offset: ArrayLike = 0.0) -> NDArray[np.float64]:
+    """Return the gap x2 - x1 + offset of states (..., 4); rounding at an offset is 0."""
+    rows, offsets = (np.ascontiguousarray(part, dtype=float) for part in (states, gap_offset))
+    gaps = np.empty(rows.shape[:-1])
+    addresses = rows.ctypes.data, gaps.size, offsets.ctypes.data, offsets.size == 1
+    respond_library().find_gaps(*addresses, gaps.ctypes.data)
+    return gaps
+
+
+def checked_four_numbers(start: ArrayLike) -> list[float]:
+    """Return a start state as a list; raise unless it is four numbers."""
+    try:
+        state = np.asarray(start, dtype=float)
+    except NOT_NUMBERS:
+        state = np.empty(0)
+    if state.shape != (len(START_PARAMETERS),):
+        raise InputError(f"start = {start!r}: expected 4 numbers, x1, x2, v1, v2")
+    numbers: list[float] = state.tolist()
+    return numbers
 
 
 def relative_to_rest(structure: Structure, state: Sequence[float]) -> list[float]:

@@ -22,7 +22,7 @@ from ..fmu.events import BOX as BOX_ACCELERATION
 from ..fmu.events import PLAYED, Player
 from ..fmu.instance import Instance
 from ..fmu.models import OSCILLATOR
-from ..fmu.start import REST, start_motion
+from ..fmu.oscillator import REST, start_motion
 from ..lazy import xr
 from ..model import Excitation
 from ..model.arguments import Count, Positive

@@ -1,5 +1,6 @@
 """Malicious input: refused in one line, without harm, in little time and memory."""
 
+import json
 import random
 import shutil
 import sys
@@ -12,10 +13,10 @@ import pytest
 
 import orchestrate
 from tests import ROOT
-from tests.faults import Surroundings
+from tests.faults import FILE_DAMAGE, Surroundings
 from tests.orchestrate.cli.commands import Done
 
-from . import archives, documents
+from . import archives
 from .findings import expect_none
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes of Linux")
@@ -29,6 +30,36 @@ READERS = (
     "branch --start {} --limits 0.9:1.1",
     "border --start {} --limits 1:2,0.1:0.9",
 )
+MARKUP = "</script><script>alert(1)</script><img src=x onerror=alert(1)>"
+LINES = "one\ntwo\r\nTraceback (most recent call last):\x1b[2J"
+
+
+def write_result(place: Path, chance: random.Random, good: Path) -> None:
+    """Write a result file that is damaged, or has content that no result has."""
+    if chance.random() < 0.4:
+        place.write_bytes(good.read_bytes())
+        chance.choice(list(FILE_DAMAGE.values()))(place, chance)
+        return
+    import netCDF4
+
+    kind = chance.randrange(7)
+    identities = ("[" * 100_000, LINES, json.dumps({"question": LINES, "fmu": 5}))
+    with netCDF4.Dataset(place, "w") as file:
+        file.createDimension("n", 10**12 if kind == 0 else 3)
+        if kind == 0:  # terabytes that are not there
+            file.createVariable("xi_rel", "f8", ("n",), chunksizes=(1 << 16,), zlib=True)
+            return
+        file.createVariable("xi_rel", "f8", ("n",))[:] = 1.0
+        if kind <= len(identities):
+            file.setncattr("identity", identities[kind - 1])
+        elif kind == 4:
+            file.setncattr("over", chance.choice((LINES, "eta")))
+        elif kind == 5:
+            file.createVariable("x" + MARKUP.replace("/", "|"), "f8", ("n",))
+            file.setncattr("call", MARKUP)
+        else:
+            file["xi_rel"].setncattr("scale_factor", "x")
+            file["xi_rel"].setncattr("units", "days since 0000-99-99")
 
 
 def run_limited(command: Sequence[object], folder: Path) -> tuple[Done, str]:
@@ -74,7 +105,7 @@ def attack_reader(
     else:
         reader = chance.choice(READERS)
         kind = f"NetCDF for {reader.split()[0]}"
-        documents.write_result(place, chance, good)
+        write_result(place, chance, good)
         command = reader.format(place).split()
         output[1] = folder / ("page.html" if "explore" in reader else "results")
     done, problem = run_limited([*command, *output], folder)

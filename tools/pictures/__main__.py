@@ -7,6 +7,7 @@ minutes; figures of the paper come from ``python -m orchestrate paper`` and get 
 
 from __future__ import annotations
 
+import io
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -15,12 +16,14 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from PIL import Image
 
 import orchestrate
 from orchestrate import cli
+from orchestrate.files import write_atomically
+from orchestrate.show.figure_files import png_bytes
 from orchestrate.weak_drive.drive_spectra import drive_spectra
-from tools.pictures import beam, cards, fmu, level, theory
-from tools.pictures.small import save_with_few_colours, write_png_with_few_colours
+from tools.pictures import beam, cards, level, theory
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAPER = orchestrate.Structure.nondimensional(e=0.7, D=0.005)
@@ -42,6 +45,7 @@ COMMANDS = {  # pictures that a command draws: name, its line, ending of the fil
         "",
     ),
 }
+COLOURS = 128  # more are not seen in lines and letters
 KEPT = ("figure6", "figure12", "lyapunov", "diagnosis")  # by other tools
 
 
@@ -107,7 +111,7 @@ PICTURES: dict[str, Callable[[], Figure]] = {
     "two_masses": beam.draw_two_masses,
     "engineer": draw_engineer_card,
     "researcher": draw_researcher_card,
-    "fmu": fmu.draw_block,
+    "fmu": cards.draw_block,
     "states": draw_states_over_a_period,
     "certificate": theory.draw_certified_root_search,
     "spectra": draw_drive_spectra,
@@ -126,11 +130,18 @@ def png_drawn_by_command(line: str, ending: str) -> bytes:
         return chosen.read_bytes()
 
 
+def write_png_with_few_colours(png: bytes, path: Path) -> None:
+    with Image.open(io.BytesIO(png)) as picture:
+        few = picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+
+    write_atomically(path, lambda place: few.save(place, format="png", optimize=True))
+
+
 def main(names: list[str]) -> None:
     for name in names or [*PICTURES, *COMMANDS]:
         path = DOCS / f"{name}.png"
         if name in PICTURES:
-            save_with_few_colours(PICTURES[name](), path)
+            write_png_with_few_colours(png_bytes(PICTURES[name]()), path)
         elif name in COMMANDS:
             write_png_with_few_colours(png_drawn_by_command(*COMMANDS[name]), path)
         elif name in KEPT:
