@@ -154,7 +154,7 @@ def test_a_floor_knows_only_those_below(root, below):
 
 def test_who_knows_the_sources_of_the_fmus_and_the_tests():
     assert not {file for file in users("orchestrate") if file.startswith("fmu_src/")}
-    assert users("tests") == {"tools/c_host.py"}  # the benchmark's host is an importer of tests
+    assert users("tests") == {"tools/benchmark.py"}  # its host in C is an importer of tests
     assert {file for file in users("fmu_src") if file.startswith("orchestrate/")} == {
         *(f"orchestrate/fmu/{name}.py" for name in ("c_library", "exported", "webassembly")),
         *("orchestrate/response/multiplicity.py", "orchestrate/dynamics/closed_form.py"),
