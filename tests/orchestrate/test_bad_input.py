@@ -27,6 +27,14 @@ LABELS = xr.Dataset({"attractor_of": (("v_rel", "x_rel"), np.zeros((12, 40), np.
 TWO = [1.0, 2.0]
 OVER = {"eta": 1.0, "over": "e"}
 AXES = {"eta": TWO, "e": [0.3, 0.7]}
+
+
+@functools.cache
+def window():
+    return orchestrate.branch(UNIT, eta=2.6, limits=(2.5, 2.7))
+
+
+FROM = {"start": window, "limits": (2.0, 4.0)}
 ASKED = {  # by function: what is asked well, and each time one thing wrongly
     "sweep": (
         {},
@@ -129,6 +137,21 @@ ASKED = {  # by function: what is asked well, and each time one thing wrongly
             ({"eta": 4.0}, "eta = 4.0"),
             ({"eta": 2.5, "period": 2, "limits": (2.4, 2.8)}, "a guess to orbit"),
             ({"start": xr.Dataset()}, "start: a dataset over nothing"),
+            ({**FROM, "switch": 0}, "switch: Neimark-Sacker"),
+            ({**FROM, "switch": 99}, "switch = 99"),
+            (FROM, "several"),
+        ],
+    ),
+    "border": (
+        {"start": window, "bifurcation": 0, "limits": [(2.0, 4.0), (0.5, 0.9)]},
+        [
+            ({"over": ("e", "eta")}, "over"),
+            ({"over": ("eta", "ee")}, "over = 'ee'"),
+            ({"limits": [(2.0, 4.0)]}, "limits"),
+            ({"limits": [(1.0, 1.1), (0.5, 0.9)]}, "limits = .*: eta = .* at the start"),
+            ({"limits": [(2.0, 4.0), (0.8, 0.9)]}, "limits = .*: e = 0.7 at the start"),
+            ({"bifurcation": 99}, "bifurcation = 99"),
+            ({"start": 1.5}, "start = 1.5"),
         ],
     ),
     "manifold": (
@@ -158,53 +181,28 @@ def refusal(call, words):
     assert "\n" not in str(told.value) and "expected" in str(told.value)
 
 
+def function_and_arguments(name, wrong):
+    """A function, what it is asked about, and its keywords, but for what is wrong."""
+    asked = {**ASKED[name][0], **wrong}
+    asked = {key: window() if value is window else value for key, value in asked.items()}
+    first = asked.pop("data") if "data" in asked else asked.pop("structure", UNIT)
+    return getattr(orchestrate, name), first, asked
+
+
 @pytest.mark.parametrize(("name", "wrong", "words"), CASES)
 def test_a_question_asked_wrongly(exported, name, wrong, words):
-    asked = {**ASKED[name][0], **wrong}
-    first = asked.pop("data") if "data" in asked else asked.pop("structure", UNIT)
-    refusal(lambda: getattr(orchestrate, name)(first, **asked), words)
+    function, first, asked = function_and_arguments(name, wrong)
+    refusal(lambda: function(first, **asked), words)
 
 
 @pytest.mark.parametrize("name", ASKED)
 def test_each_keyword_of_a_question_is_refused_by_its_name(exported, name):
-    function, good = getattr(orchestrate, name), {"eta": 1.3, **ASKED[name][0]}
-    first = good.pop("data", good.pop("structure", UNIT))
+    function, first, good = function_and_arguments(name, {})
     keys = [*inspect.signature(function).parameters][1:]
+    good = {key: value for key, value in ({"eta": 1.3} | good).items() if key in keys}
     for key in (key for key in keys if key not in ("running", "parameters")):
-        asked = {one: value for one, value in good.items() if one in keys}
         for wrong in (object(), {"a": 1}, [[1.0], [2.0, 3.0]]):
-            refusal(lambda asked={**asked, key: wrong}: function(first, **asked), key)
-
-
-@functools.cache
-def window():
-    return orchestrate.branch(UNIT, eta=2.6, limits=(2.5, 2.7))
-
-
-@pytest.mark.parametrize(
-    ("wrong", "words"),
-    [
-        ({"over": ("e", "eta")}, "over"),
-        ({"over": ("eta", "ee")}, "over = 'ee'"),
-        ({"limits": [(2.0, 4.0)]}, "limits"),
-        ({"limits": [(1.0, 1.1), (0.5, 0.9)]}, "limits = .*: eta = .* at the start"),
-        ({"limits": [(2.0, 4.0), (0.8, 0.9)]}, "limits = .*: e = 0.7 at the start"),
-        ({"bifurcation": 99}, "bifurcation = 99"),
-        ({"start": 1.5}, "start = 1.5"),
-    ],
-)
-def test_a_border_asked_wrongly(exported, wrong, words):
-    good = {"bifurcation": 0, "limits": [(2.0, 4.0), (0.5, 0.9)], "over": ("eta", "e")}
-    refusal(lambda: orchestrate.border(UNIT, **{"start": window(), **good, **wrong}), words)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "words"),
-    [({"switch": 0}, "switch: Neimark-Sacker"), ({"switch": 99}, "switch = 99"), ({}, "several")],
-)
-def test_what_cannot_be_switched_to(exported, wrong, words):
-    given = {"start": window(), "limits": (2.0, 4.0), **wrong}
-    refusal(lambda: orchestrate.branch(UNIT, **given), words)
+            refusal(lambda asked={**good, key: wrong}: function(first, **asked), key)
 
 
 @pytest.mark.parametrize(
