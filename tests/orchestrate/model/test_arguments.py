@@ -36,10 +36,9 @@ def test_what_is_no_integer_of_the_range_is_refused(value):
         ({"store": "é" * 130}, "store: the name é+... has 260 bytes"),
     ],
 )
-def test_wrong_keywords_on_how_to_compute_are_one_line(running, text):
-    with pytest.raises(InputError, match=text) as caught:
+def test_wrong_keywords_on_how_to_compute(running, text):
+    with pytest.raises(InputError, match=text):
         orchestrate.simulate(Structure(), eta=1.1, **running)
-    assert "\n" not in str(caught.value)
 
 
 CURVE = partial(orchestrate.resonance_curve, frequency=[1, 2, 3, 4], amplitude1=[1, 2, 3, 4])

@@ -133,10 +133,9 @@ H = "thicknesses = .*expected two numbers > 0"
         *((lambda h=h: Structure.from_bonded(**LAYERS, thicknesses=h), H) for h in WRONG),
     ],
 )
-def test_refusals_are_one_line(call, words):
-    with pytest.raises(InputError, match=words) as error:
+def test_refusals(call, words):
+    with pytest.raises(InputError, match=words):
         call()
-    assert "\n" not in str(error.value)
 
 
 def test_preload_and_place_at_rest():
