@@ -1,16 +1,14 @@
-"""xarray and NumPy, imported when they are first used, and ``Unpack`` of older Pythons."""
+"""xarray and NumPy, imported when they are first used; typing's ``Unpack`` beside them."""
 
 from __future__ import annotations
 
-import typing
 from collections.abc import Callable
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 if TYPE_CHECKING:
     import numpy as np
     import xarray as xr
-    from typing_extensions import Unpack
 else:
 
     class Lazy:
@@ -23,6 +21,5 @@ else:
             return getattr(self.load(), name)
 
     np, xr = Lazy(lambda: import_module("numpy")), Lazy(lambda: import_module("xarray"))
-    Unpack = getattr(typing, "Unpack", typing.Optional)  # before 3.11 any generic type will do
 
 __all__ = ["Unpack", "np", "xr"]

@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from functools import reduce
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 from .constants import GRAVITY, TURN
@@ -168,10 +169,7 @@ def parameter_of(data: xr.Dataset, name: str, default: float | None = None) -> A
 
 
 def is_finite_number(value: Any) -> bool:
-    try:
-        return not isinstance(value, str) and math.isfinite(value)
-    except TypeError:
-        return False
+    return isinstance(value, Real) and math.isfinite(value)
 
 
 def excitation_period_of(data: xr.Dataset) -> float:
