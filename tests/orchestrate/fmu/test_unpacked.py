@@ -76,18 +76,18 @@ def test_what_a_killed_process_left_is_removed_by_the_next_and_nothing_else(proc
     assert not folder.exists()
 
 
-def test_a_process_unpacks_an_fmu_once(any_fmu, tmp_path):
-    with Instance(any_fmu), Instance(any_fmu, name="second"):
-        first = unpack_once(describe(any_fmu))
+def test_a_process_unpacks_an_fmu_once(used_fmu, tmp_path):
+    with Instance(used_fmu), Instance(used_fmu, name="second"):
+        first = unpack_once(describe(used_fmu))
     stamp = (first / "modelDescription.xml").stat().st_mtime_ns
     copy = tmp_path / "copy.fmu"
-    copy.write_bytes(any_fmu.read_bytes())
+    copy.write_bytes(used_fmu.read_bytes())
     with Instance(copy):
         assert unpack_once(describe(copy)) == first  # the bytes decide, not the name
     assert (first / "modelDescription.xml").stat().st_mtime_ns == stamp
 
 
-def test_what_cannot_be_unpacked_leaves_nothing(any_fmu, tmp_path, monkeypatch):
+def test_what_cannot_be_unpacked_leaves_nothing(used_fmu, tmp_path, monkeypatch):
     import fmpy
 
     def full(_, target):
@@ -95,7 +95,7 @@ def test_what_cannot_be_unpacked_leaves_nothing(any_fmu, tmp_path, monkeypatch):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(fmpy, "extract", full)
-    fmu = altered_fmu(any_fmu, tmp_path / "mine.fmu", version=(VERSION, "0.1.3"))
+    fmu = altered_fmu(used_fmu, tmp_path / "mine.fmu", version=(VERSION, "0.1.3"))
     before = set(process_temporary_folder().iterdir())
     with pytest.raises(StoreError, match=r"cannot be unpacked \(No space left on device\)"):
         Instance(fmu)

@@ -39,10 +39,6 @@ def ours(tmp_path, monkeypatch):
     forget()
 
 
-def test_code_is_the_closure_of_imports(ours):
-    assert list(digests_of_code("small.sweep")) == ["small.deep", "small.sweep", "small.tools"]
-
-
 @pytest.mark.parametrize(
     ("file", "text", "told"),
     [
