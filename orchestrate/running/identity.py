@@ -52,10 +52,6 @@ def describe_difference(stored: Identity, current: Identity) -> str:
     return ""
 
 
-def is_same_question(stored: Identity, current: Identity) -> bool:
-    return stored.get("question") == current.get("question")
-
-
 def format_changed_modules(stored: Mapping[str, str], current: Mapping[str, str]) -> str:
     names = sorted(name for name in {*stored, *current} if stored.get(name) != current.get(name))
     shown = ", ".join(f"{name.replace('.', '/')}.py" for name in names[:3])

@@ -20,7 +20,7 @@ from ..files import check_path_encoding, make_writable_folder, write_atomically
 from ..lazy import xr
 from .array_blocks import BLOCK, block_indices, file_block_shape
 from .checksum import ATTRIBUTE, checksum
-from .identity import Identity, describe_difference, is_same_question
+from .identity import Identity, describe_difference
 from .job import Table
 from .journal import ANEW, Journal, delete_journal_files, journal_path, lock_result
 from .netcdf import MAX_LOADED, check_unpacked_size, read_dataset
@@ -119,19 +119,18 @@ class DiskStore(Store):
         self._journal: Journal | None = None
         try:
             anew = journal_path(path, recomputing=True)
-            if path.exists() and options.force:
-                read_identity(path)  # of another's file there is nothing to replace
+            if not path.exists():
+                self._open_journal(journal_path(path))
+            elif options.force or self._is_resumable(anew):
+                if options.force:
+                    read_identity(path)  # of another's file there is nothing to replace
                 self._open_journal(anew)
-            elif path.exists() and self._is_resumable(anew):
-                self._open_journal(anew)
-            elif path.exists():
+            else:
                 identity = read_identity(path)
                 self._result = load_result(path)  # first, or damage is taken for another question
                 self.check_identity(identity, path)
                 FINISHED.add(path)
                 delete_journal_files(journal_path(path))  # of a process killed before it did so
-            else:
-                self._open_journal(journal_path(path))
         except BaseException:
             self.close()
             raise
@@ -165,7 +164,7 @@ class DiskStore(Store):
         reason = describe_difference(stored, self.identity)
         if not reason:
             return
-        if not is_same_question(stored, self.identity):
+        if stored.get("question") != self.identity.get("question"):
             text = f"{path}: contains the result of a different calculation ({reason})"
             raise InputError(f"{text}; choose another place, or force to replace it")
         if not self.options.keep_stale:
