@@ -350,7 +350,7 @@ class Structure(StructureText, Described):
         heavy, light = h1 / (h1 + h2), h2 / (h1 + h2)
         stiff, soft = heavy**3 / (heavy**3 + light**3), light**3 / (heavy**3 + light**3)
         k, d = stiffness_from_frequency(f, mass), damping_from_ratio(zeta, 2.0 * math.pi * f, mass)
-        halves = {
+        halves: dict[str, Any] = {
             **{"m1": heavy * mass, "k1": stiff * k, "d1": stiff * d},
             **{"m2": light * mass, "k2": soft * k, "d2": soft * d},
         }

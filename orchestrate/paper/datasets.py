@@ -73,7 +73,7 @@ class Datasets:
         if count is not None:
             etas = np.sort(np.random.default_rng(500).choice(etas, count, replace=False))
         done = size.transient + size.samples  # the sweep's last n
-        more = {"transient": first - 1 - done, "samples": size.samples + 1}
+        more: dict[str, Any] = {"transient": first - 1 - done, "samples": size.samples + 1}
         more |= {"eta": etas, "start": self.up_sweep("elastic")}
         return self.get_or_compute(f"later_{first}", orchestrate.sweep, ELASTIC, **more)
 
@@ -183,8 +183,8 @@ class Datasets:
         middle = (1.0 + structure.mu) / (1.0 + structure.kappa)  # (6) without rates
         parting, share = 0.01 * ((1.0 - structure.e) or 1.0), structure.mu / (1.0 + structure.mu)
         start = middle, middle, -share * parting, (1.0 - share) * parting
-        kick = {"eta": 0.02, "phase": 0.5 * np.pi, "start": start, "periods": 1, "points": 4}
-        motion = orchestrate.simulate(structure, **kick, **self.running)
+        kick: dict[str, Any] = {"eta": 0.02, "phase": 0.5 * np.pi, "start": start, "points": 4}
+        motion = orchestrate.simulate(structure, **kick, periods=1, **self.running)
         quarter = motion.impact_time.values < float(motion.time[1])
         times, sticks = motion.impact_time.values[quarter], motion.sticks.values[quarter] > 0
         times = times[: int(sticks.argmax()) + 1] if sticks.any() else times

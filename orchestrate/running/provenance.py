@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 def with_provenance(
     dataset: xr.Dataset, job: Job, identity: Identity, fmus: Mapping[str, Description], begun: str
 ) -> xr.Dataset:
-    call, of_fmus = job.format_call(), {}
+    call = job.format_call()
+    of_fmus: dict[str, str] = {}
     for model, fmu in fmus.items():
         ending = f"_{model}" if len(fmus) > 1 else ""
         own = {"fmu_model": fmu.name, "fmu_guid": fmu.guid, "fmi_version": fmu.fmi_version}

@@ -12,6 +12,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -64,10 +65,17 @@ def draw_states_over_a_period() -> Figure:
 
 
 def draw_engineer_card() -> Figure:
-    halves = {"m1": 1.5, "m2": 1.4, "f1": 11.9, "f2": 13.5, "zeta1": 0.005, "zeta2": 0.005}
+    halves: dict[str, Any] = {
+        "m1": 1.5,
+        "m2": 1.4,
+        "f1": 11.9,
+        "f2": 13.5,
+        "zeta1": 0.005,
+        "zeta2": 0.005,
+    }
     structure = orchestrate.Structure.from_halves(**halves, e=0.6)
     turns = 2.0 * np.pi * np.arange(10.0, 15.0, 0.05)
-    held = {"frequency": turns, "amplitude": 0.02 * 9.80665 / turns**2}
+    held: dict[str, Any] = {"frequency": turns, "amplitude": 0.02 * 9.80665 / turns**2}
     return cards.draw_resonance(orchestrate.resonance(structure, **held, progress=False))
 
 

@@ -14,7 +14,15 @@ from orchestrate.show.colours import BLACK, RED
 from orchestrate.show.style import make_panels, styled
 
 LEVEL = 0.5 * GRAVITY
-HALVES = {"m1": 0.10, "m2": 0.08, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.007, "e": 0.6}
+HALVES: dict[str, Any] = {
+    "m1": 0.10,
+    "m2": 0.08,
+    "f1": 42.0,
+    "f2": 55.0,
+    "zeta1": 0.007,
+    "zeta2": 0.007,
+    "e": 0.6,
+}
 
 
 def simulate_controlled_sweeps() -> dict[str, tuple[xr.Dataset, xr.Dataset]]:
