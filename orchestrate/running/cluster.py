@@ -27,7 +27,7 @@ def cluster_workers(where: Any, count: int) -> Iterator[Workers]:
             yield workers
     elif isinstance(where, Executor):
         try:
-            yield Workers(where, lambda: count + 1, remote=True)
+            yield Workers(where, lambda: count + 1)
         except BrokenExecutor as error:
             raise WorkerError(f"{format_broken_pool(error)}; {RESUMES}") from None
     else:
@@ -39,7 +39,7 @@ def cluster_workers(where: Any, count: int) -> Iterator[Workers]:
 def dask_workers(client: Any) -> Iterator[Workers]:
     executor = client.get_executor(pure=False, retries=RETRIES)
     try:
-        yield Workers(executor, lambda: 2 * max(1, sum(client.ncores().values())), remote=True)
+        yield Workers(executor, lambda: 2 * max(1, sum(client.ncores().values())))
     except BaseException as error:
         with suppress(Exception):
             executor.shutdown(wait=False)

@@ -74,7 +74,6 @@ class Workers:
 
     executor: Executor
     max_in_flight: Callable[[], int]  # chunks to submit at once
-    remote: bool = False  # whether they share no disk with this process, and may have other sources
 
 
 class InlineExecutor(Executor):

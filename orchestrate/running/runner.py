@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -110,14 +111,12 @@ class Runner:
             if not (self.options.cluster or self.foreign):
                 inline = nullcontext(Workers(InlineExecutor(), lambda: 1))
                 with thread_workers(1) if self.in_threads else inline as workers:
-                    fmus = self.fmus_to_send(workers)
-                    self.compute_while(workers, fmus, bar, self.is_little_left)
+                    self.compute_while(workers, bar, self.is_little_left)
             if not self.all_complete():
                 with self.choose_workers() as workers:
-                    fmus = self.fmus_to_send(workers)
-                    self.submit_tasks(workers, fmus)  # workers start while this process imports
+                    self.submit_tasks(workers)  # workers start while this process imports
                     threading.Thread(target=import_xarray, daemon=True).start()
-                    self.compute_while(workers, fmus, bar, lambda: True)
+                    self.compute_while(workers, bar, lambda: True)
 
     def choose_workers(self) -> AbstractContextManager[Workers]:
         count = self.options.worker_count
@@ -150,16 +149,10 @@ class Runner:
     def bar_label(self) -> str:
         return self.jobs[0].name if len(self.jobs) == 1 else f"{len(self.jobs)} results"
 
-    def compute_while(
-        self,
-        workers: Workers,
-        fmus: Mapping[str, Path | bytes],
-        bar: Any,
-        may_submit: Callable[[], bool],
-    ) -> None:
+    def compute_while(self, workers: Workers, bar: Any, may_submit: Callable[[], bool]) -> None:
         while not self.all_complete() and (may_submit() or self.futures):
             if may_submit():
-                self.submit_tasks(workers, fmus)
+                self.submit_tasks(workers)
             if not self.futures:
                 stuck = "nothing is under way, nothing is ready"
                 assert self.all_complete() or not may_submit(), stuck
@@ -175,14 +168,13 @@ class Runner:
                 self.computed_items += len(task.items)
             bar.update(self.items_done() - bar.n)
 
-    def fmus_to_send(self, workers: Workers) -> dict[str, Path | bytes]:
-        """Return FMUs by model as workers get them: paths, or bytes for remote workers."""
-        return {
-            model: fmu.path.read_bytes() if workers.remote else fmu.path.resolve()
-            for model, fmu in self.fmus.items()
-        }
+    @cached_property
+    def sent_fmus(self) -> dict[str, Path | bytes]:
+        """FMUs by model as workers get them: paths, or bytes where they share no disk with us."""
+        files = {model: fmu.path.resolve() for model, fmu in self.fmus.items()}
+        return {m: path.read_bytes() if self.options.cluster else path for m, path in files.items()}
 
-    def submit_tasks(self, workers: Workers, fmus: Mapping[str, Path | bytes]) -> None:
+    def submit_tasks(self, workers: Workers) -> None:
         for schedule in self.schedules.values():
             while len(self.futures) < workers.max_in_flight() and not schedule.is_complete:
                 # nothing that is sure waits behind a guess
@@ -190,10 +182,11 @@ class Runner:
                 if task is None:
                     break
                 schedule.under_way.add(task.chunk.index)
+                fmus = {model: self.sent_fmus[model] for model in schedule.job.models}
                 call = (
-                    *(schedule.job, {model: fmus[model] for model in schedule.job.models}),
+                    *(schedule.job, fmus),
                     *(task.items, task.previous, task.warmup_items),
-                    schedule.identity["code"] if workers.remote else None,
+                    schedule.identity["code"] if self.options.cluster else None,  # its sources
                 )
                 future = workers.executor.submit(compute_chunk, *call)
                 self.futures[future] = schedule, task
