@@ -22,16 +22,13 @@ from ..model.spelling import did_you_mean
 MOTION = ("box_acceleration", "box_velocity", "box_position")  # outputs of a drive
 FORCE = ("box_force", "box_force_1", "box_force_2", "box_force_3")  # inputs: with its derivatives
 PUSHES = ("force1", "force2")  # outputs of a drive: forces on the halves
-UNITS = {  # exponents of SI units
-    "box_acceleration": {"m": 1, "s": -2},
-    "box_velocity": {"m": 1, "s": -1},
-    "box_position": {"m": 1},
-    **{name: {"kg": 1, "m": 1, "s": -2 - order} for order, name in enumerate(FORCE)},
-    **{name: {"kg": 1, "m": 1, "s": -2} for name in PUSHES},
+UNITS = {
+    **dict(zip(MOTION, ("m/s2", "m/s", "m"), strict=True)),
+    **dict(zip(FORCE, ("N", "N/s", "N/s2", "N/s3"), strict=True)),
+    **dict.fromkeys(PUSHES, "N"),
 }
-WORDS = ("m/s2", "m/s", "m", "N", "N/s", "N/s2", "N/s3", "N", "N")
-IN_WORDS = dict(zip(UNITS, WORDS, strict=True))
-OURS = dict(zip((*MOTION, *FORCE), (*MOTION, *FORCE), strict=True))  # of the package's own drives
+EXPONENTS = {name: unit.exponents for name, word in UNITS.items() if (unit := parse_unit(word))}
+OURS = {name: name for name in (*MOTION, *FORCE)}  # of the package's own drives
 EXPECTED = f"expected some of {', '.join(MOTION)}, and box_force; or {' or '.join(PUSHES)}"
 
 
@@ -149,15 +146,13 @@ def factor_to_si(drive: Description, ours: str, theirs: str, units: Mapping[str,
     unit = parse_unit(name) if theirs in units else drive.units.get(name)
     if not name:
         return 1.0
-    if unit is None or unit.exponents != UNITS[ours]:
-        fits = [one for one in MOTION if unit is not None and unit.exponents == UNITS[one]]
+    if unit is None or unit.exponents != EXPONENTS[ours]:
+        fits = [one for one in MOTION if unit is not None and unit.exponents == EXPONENTS[one]]
         hint = f" ({name}: {fits[0]}?)" if fits else ""
         if unit is None:
-            hint = (
-                f"; this unit is not known: state it, as units={{{theirs!r}: {IN_WORDS[ours]!r}}}"
-            )
+            hint = f"; this unit is not known: state it, as units={{{theirs!r}: {UNITS[ours]!r}}}"
         raise InputError(
-            f"{theirs} of the FMU {drive.name} is in {name}; {ours} expects {IN_WORDS[ours]}{hint}"
+            f"{theirs} of the FMU {drive.name} is in {name}; {ours} expects {UNITS[ours]}{hint}"
         )
     return unit.factor
 
@@ -175,15 +170,13 @@ def propose_connections(drive: Description) -> dict[str, str]:
       and without a motion and a force nothing is.
     """
     found: dict[str, str] = {}
-    for ours, powers in UNITS.items():
-        if ours in PUSHES:
-            continue
+    for ours in OURS:
         ranks = {}
         for name, variable in drive.variables.items():
             unit = drive.units.get(variable.unit or "")
-            theirs = unit.exponents if unit is not None else None
+            theirs = unit and unit.exponents
             rank = name_similarity(ours.partition("_")[2], name)
-            fits = theirs == powers or (theirs is None and rank == 1.0)
+            fits = theirs == EXPONENTS[ours] or (theirs is None and rank == 1.0)
             fits = fits and variable.type in REAL_TYPES and name not in found.values()
             if fits and variable.causality == ("input" if ours in FORCE else "output"):
                 ranks[name] = (theirs is not None, rank)

@@ -87,10 +87,10 @@ class EnergyBalance:
         own = 0.5 * (s.m1 * v1 * v1 + s.m2 * v2 * v2 + s.k1 * x1 * x1 + s.k2 * x2 * x2)
         return own + s.preload * motion.x_rel
 
-    def get_state(self) -> list[float]:
+    def numbers_to_resume(self) -> list[float]:
         return [*self.sums.tolist(), *self.start.tolist()]
 
-    def set_state(self, numbers: list[float]) -> None:
+    def resume_from(self, numbers: list[float]) -> None:
         self.sums, self.start = np.array(numbers[:3]), np.array(numbers[3:])
 
 

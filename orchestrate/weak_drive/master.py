@@ -55,10 +55,6 @@ class Scheme:
         checked_range("step", self.h, "s", low=0.0, open_low=True)
         checked_range("tolerance", self.tolerance, "(0 leaves steps as they are)", low=0.0)
 
-    def max_rows(self, intervals: int) -> int:
-        halves = self.tolerance or self.halves_discarded
-        return intervals << self.halvings if halves else intervals
-
 
 STATES: dict[int, tuple[str, ...]] = {3: ("GetFMUState", "SetFMUState", "FreeFMUState")}
 STATES[2] = ("GetFMUstate", "SetFMUstate", "FreeFMUstate", "GetRealStatus", "GetBooleanStatus")
@@ -147,11 +143,6 @@ class DriveSide:
             (*(link.theirs for _, link in forces), *connection.outputs),
         )
 
-    @property
-    def numbered_links(self) -> tuple[list[tuple[int, Link]], ...]:
-        """Return what is connected: the force on the box, its motion, and forces on halves."""
-        return self.forces, self.motions, self.pushes
-
     def set_inputs(self, force: Sequence[float], inputs: Sequence[float]) -> None:
         self.channel.set_inputs(*(force[i] / link.scale for i, link in self.forces), *inputs)
 
@@ -236,8 +227,9 @@ class Master:
     def _run_pieces(
         self, pieces: Iterable[NDArray[np.float64]], count: int, h: float | None
     ) -> Record:
-        now, width = np.array(self.row), len(self.row)
-        rows = np.empty((1 + self.scheme.max_rows(count), width))
+        now, halves = np.array(self.row), self.scheme.tolerance or self.scheme.halves_discarded
+        max_steps = count << self.scheme.halvings if halves else count
+        rows = np.empty((1 + max_steps, len(now)))
         rows[0], ends, at, intervals = self.row, np.zeros(count, dtype=np.intc), 0, 0
         recorded = np.empty((count, len(self.connection.recorded)))
         self.pair.table = recorded.ctypes.data
@@ -257,7 +249,8 @@ class Master:
             at = int(ends[intervals - 1]) if intervals else 0
             if done < len(values) or self.end_reason:
                 break
-        return Record.from_rows(self.names, rows[: at + 1], ends[:intervals], recorded[:intervals])
+        columns = np.ascontiguousarray(rows[: at + 1].T)
+        return Record(self.names, columns, ends[:intervals].astype(np.intp), recorded[:intervals])
 
     @functools.cached_property
     def _reads_recorded_in_python(self) -> bool:
@@ -288,8 +281,9 @@ class Master:
         goes_back = drive.instance.description.has_states
         pair.first_passes = self.scheme.first_passes if goes_back else 1
         pair.halves_discarded = self.scheme.halves_discarded and goes_back
-        for name, links in zip(("force", "motion", "pushes"), drive.numbered_links, strict=True):
-            setattr(pair, name, Links.from_numbered(links))
+        pair.force, pair.motion, pair.pushes = map(
+            Links.from_numbered, (drive.forces, drive.motions, drive.pushes)
+        )
         names = () if self._reads_recorded_in_python else connection.recorded
         pair.cubic, pair.recorded = connection.first_cubic, value_references(drive.instance, names)
         pair.recorded_count, pair.stride = len(names), self.input_width
@@ -298,11 +292,8 @@ class Master:
 
     def _check_answers(self) -> None:
         """Raise what ended the run, keep warnings; an FMU that ended the simulation is no error."""
-        sides = (
-            (self.oscillator, self.pair.oscillator.fmi),
-            (self.drive.channel, self.pair.drive.fmi),
-        )
-        for channel, side in sides:
+        sides = (self.pair.oscillator.fmi, self.pair.drive.fmi)
+        for channel, side in zip((self.oscillator, self.drive.channel), sides, strict=True):
             if not (side.status or side.warned or channel.answer.terminate):
                 continue
             if side.warned:
@@ -318,12 +309,13 @@ class Master:
 
     # -- to go on elsewhere --
 
-    def get_state(self) -> list[float]:
+    def numbers_to_resume(self) -> list[float]:
+        """Return all that goes on besides both FMUs' states; :meth:`resume_from` takes it."""
         known = 2 * self.pair.point_count
         memory = [x for name in MEMORY for x in getattr(self.pair, name)]
         return [*self.row, *memory, *self.pair.points[:known], *[math.nan] * (2 * PAST - known)]
 
-    def set_state(self, numbers: Sequence[float]) -> None:
+    def resume_from(self, numbers: Sequence[float]) -> None:
         rest = iter(numbers)
         self.row = [next(rest) for _ in self.names]
         for name, count in MEMORY.items():

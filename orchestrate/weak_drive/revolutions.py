@@ -83,8 +83,8 @@ class Revolutions:
     def _raise_largest(self, largest: Floats) -> None:
         self.largest = np.maximum(self.largest, largest.max(axis=1, initial=NOTHING))
 
-    def get_state(self) -> list[float]:
+    def numbers_to_resume(self) -> list[float]:
         return [*self.last.tolist(), *self.largest.tolist()]
 
-    def set_state(self, numbers: Sequence[float]) -> None:
+    def resume_from(self, numbers: Sequence[float]) -> None:
         self.last, self.largest = np.array(numbers[:3]), np.array(numbers[3:])

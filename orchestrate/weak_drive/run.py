@@ -47,7 +47,6 @@ class Run:
     """Step both FMU instances of a master; save and restore all that goes on."""
 
     def __init__(self, master: Master, inputs: Inputs, **counted: Any) -> None:
-        # what is counted is read and set by `get_state` and `set_state`, as numbers
         self.master, self.inputs = master, inputs
         self.oscillator, self.drive = master.oscillator.instance, master.drive.instance
         self._memories: dict[str, Any] = {"master": master, **counted}
@@ -62,16 +61,16 @@ class Run:
         self.master.close()
 
     def get_state(self) -> Table:
-        states = {name + STATE: one.save_state() + END for name, one in self._saved.items()}
-        numbers = {name + MEMORY: one.get_state() for name, one in self._memories.items()}
-        numbers["control" + MEMORY] = self.inputs.state
-        return {name: np.array([value]) for name, value in {**states, **numbers}.items()}
+        table = {name + STATE: one.save_state() + END for name, one in self._saved.items()}
+        table |= {name + MEMORY: one.numbers_to_resume() for name, one in self._memories.items()}
+        table["control" + MEMORY] = self.inputs.state
+        return {name: np.array([value]) for name, value in table.items()}
 
     def set_state(self, table: Table) -> None:
         for name, instance in self._saved.items():
             instance.restore_state(bytes(table[name + STATE][-1]).removesuffix(END))
         for name, one in self._memories.items():
-            one.set_state(table[name + MEMORY][-1].tolist())
+            one.resume_from(table[name + MEMORY][-1].tolist())
         self.inputs.state = tuple(table["control" + MEMORY][-1].tolist())
 
 

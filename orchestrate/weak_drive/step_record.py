@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from .polynomials import Cubic
 
 Floats = NDArray[np.float64]
-NOTHING = np.empty((0, 0))
 BOX = ("box_position", "box_velocity", "box_acceleration")
 
 
@@ -47,15 +46,7 @@ class Record:
     names: tuple[str, ...]
     columns: Floats  # (names, 1 + steps)
     ends: NDArray[np.integer[Any]]  # places in a column at which communication intervals end
-    recorded: Floats = field(default_factory=lambda: NOTHING)  # of the drive there, (ends, names)
-
-    @classmethod
-    def from_rows(
-        cls, names: tuple[str, ...], rows: Any, ends: Any, recorded: Any = NOTHING
-    ) -> Record:
-        columns = np.ascontiguousarray(np.transpose(rows))
-        table = np.asarray(recorded, dtype=float)
-        return cls(names, columns, np.asarray(ends, dtype=np.intp), table)
+    recorded: Floats  # of the drive there, (ends, names)
 
     @property
     def before(self) -> Record:

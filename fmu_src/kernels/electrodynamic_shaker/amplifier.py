@@ -10,7 +10,7 @@ holding takes. Its terms are those of a prescribed current in both cases.
 
 from . import memory as at
 from .inputs import write_input_series, write_source_series
-from .series import write_constant_series, write_motion_of_current, write_source_into
+from .series import write_constant_series, write_motion_and_voltage_series, write_source_into
 
 SAME = 1e-12  # relative: a current so near to a new command has no way to go
 
@@ -31,10 +31,10 @@ def decide_active_limits(m):
         decide_current_limit(m, h)
 
 
-def first_nonzero_term(m, series, terms, lowest):
-    """Return the number of the first term from ``lowest`` on that is not zero, else ``terms``."""
-    order = lowest
-    while order < terms and m[series + order] == 0.0:
+def first_nonzero_guard_term(m, lowest):
+    """Return the number of GUARD's first term from ``lowest`` on that is not zero, else TERMS."""
+    order = int(lowest)
+    while order < at.TERMS and m[at.GUARD + order] == 0.0:
         order += 1
     return order
 
@@ -47,7 +47,7 @@ def decide_clipping(m):
     if limit == 0.0:
         return
     write_guard(m, at.COMMAND_SERIES, at.CUBIC, side, -limit)
-    order = first_nonzero_term(m, at.GUARD, at.TERMS, int(m[at.COMMAND_LOWEST]))
+    order = first_nonzero_guard_term(m, m[at.COMMAND_LOWEST])
     m[at.COMMAND_ORDER] = order
     if order < at.TERMS and m[at.GUARD + order] > 0.0:
         m[at.CLIPPED] = side
@@ -58,6 +58,13 @@ def write_guard(m, series, terms, factor, constant):
     for k in range(at.TERMS):
         m[at.GUARD + k] = factor * m[series + k] if k < terms else 0.0
     m[at.GUARD] += constant
+
+
+def write_balance(m, series, side):
+    """Write the source minus a series, on a side, into GUARD."""
+    write_guard(m, series, at.TERMS, -side, 0.0)
+    for k in range(at.CUBIC):
+        m[at.GUARD + k] += side * m[at.SOURCE_SERIES + k]
 
 
 def decide_current_limit(m, h):
@@ -73,10 +80,8 @@ def decide_current_limit(m, h):
         return
     m[at.STATE + at.COIL_CURRENT] = side * limit
     write_constant_series(m, at.CURRENT_SERIES, side * limit)
-    write_motion_of_current(m, h)
-    write_guard(m, at.VOLTAGE_SERIES, at.TERMS, -side, 0.0)
-    for k in range(at.CUBIC):
-        m[at.GUARD + k] += side * m[at.SOURCE_SERIES + k]
+    write_motion_and_voltage_series(m, h)
+    write_balance(m, at.VOLTAGE_SERIES, side)
     decide_held_by_guard(m, side, lags)
 
 
@@ -98,7 +103,7 @@ def decide_voltage_limit(m, h):
     if limit == 0.0:
         return
     write_source_into(m, at.CURRENT_SERIES)
-    write_motion_of_current(m, h)
+    write_motion_and_voltage_series(m, h)
     side = 1.0 if m[at.VOLTAGE_SERIES] >= 0.0 else -1.0
     m[at.OTHER_SIDE] = side
     write_guard(m, at.VOLTAGE_SERIES, at.TERMS, side, -limit)
@@ -111,11 +116,12 @@ def decide_held_by_guard(m, side, lags):
     The guard of what is decided begins with as many zeros as the balance; where it is one of a
     current that follows by its inductance, with one more.
     """
-    order = first_nonzero_term(m, at.GUARD, at.TERMS, int(m[at.OTHER_LOWEST]))
-    held = order < at.TERMS and m[at.GUARD + order] > 0.0
-    if m[at.CURRENT_CONTROL] == 0.0 and order == at.TERMS:
-        held = True
+    order = first_nonzero_guard_term(m, m[at.OTHER_LOWEST])
+    commanded = m[at.CURRENT_CONTROL] != 0.0
+    held = not commanded
+    if order < at.TERMS:
+        held = m[at.GUARD + order] > 0.0
     m[at.HELD] = side if held else 0.0
-    if lags and order < at.TERMS and held == (m[at.CURRENT_CONTROL] != 0.0):
+    if lags and order < at.TERMS and held == commanded:
         order += 1
     m[at.OTHER_ORDER] = order

@@ -7,7 +7,7 @@ through the interval.
 
 from ..numerics.first_root import EPS, NO_NUMBER, next_step_or_root
 from . import memory as at
-from .amplifier import write_guard
+from .amplifier import write_balance, write_guard
 
 NONE = 2.0  # behind the interval
 MOST_STEPS = 10000  # through an interval
@@ -22,12 +22,8 @@ def find_event(m):
     if m[at.OTHER_LIMIT] > 0.0:
         watch_other_limit(m)
     if m[at.TRAVEL_LIMIT] > 0.0:
-        note_root_at_limit(
-            m, at.POSITION_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], 1.0, 0, at.TRAVEL_EVENT
-        )
-        note_root_at_limit(
-            m, at.POSITION_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], -1.0, 0, at.TRAVEL_EVENT
-        )
+        limit = m[at.TRAVEL_LIMIT]
+        note_roots_at_limits(m, at.POSITION_SERIES, at.TERMS, limit, 1.0, 0, at.TRAVEL_EVENT)
 
 
 def watch_command_limit(m):
@@ -38,8 +34,7 @@ def watch_command_limit(m):
         write_guard(m, at.COMMAND_SERIES, at.CUBIC, m[at.CLIPPED], -limit)
         note_earlier_root(m, order, at.COMMAND_EVENT)
     else:
-        note_root_at_limit(m, at.COMMAND_SERIES, at.CUBIC, limit, side, order, at.COMMAND_EVENT)
-        note_root_at_limit(m, at.COMMAND_SERIES, at.CUBIC, limit, -side, 0, at.COMMAND_EVENT)
+        note_roots_at_limits(m, at.COMMAND_SERIES, at.CUBIC, limit, side, order, at.COMMAND_EVENT)
 
 
 def watch_other_limit(m):
@@ -50,18 +45,18 @@ def watch_other_limit(m):
     if m[at.CURRENT_CONTROL] != 0.0:
         own, other = at.CURRENT_SERIES, at.VOLTAGE_SERIES
     if m[at.HELD] != 0.0:
-        write_guard(m, own, at.TERMS, -m[at.HELD], 0.0)
-        for k in range(at.CUBIC):
-            m[at.GUARD + k] += m[at.HELD] * m[at.SOURCE_SERIES + k]
+        write_balance(m, own, m[at.HELD])
         note_earlier_root(m, order, at.OTHER_EVENT)
     else:
-        note_root_at_limit(m, other, at.TERMS, limit, side, order, at.OTHER_EVENT)
-        note_root_at_limit(m, other, at.TERMS, limit, -side, 0, at.OTHER_EVENT)
+        note_roots_at_limits(m, other, at.TERMS, limit, side, order, at.OTHER_EVENT)
 
 
-def note_root_at_limit(m, series, terms, limit, side, order, kind):
+def note_roots_at_limits(m, series, terms, limit, side, order, kind):
+    """Note where a series reaches its limit on ``side``, ``order`` terms from it, or the other."""
     write_guard(m, series, terms, -side, limit)
     note_earlier_root(m, order, kind)
+    write_guard(m, series, terms, side, limit)
+    note_earlier_root(m, 0, kind)
 
 
 def note_earlier_root(m, order, kind):

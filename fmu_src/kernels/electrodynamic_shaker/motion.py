@@ -16,10 +16,10 @@ def begin_state(m):
         m[at.STATE + i] = m[at.BEGIN + i]
     m[at.INTERVAL] = 0.0
     decide_active_limits(m)
-    begin_interval(m)
+    write_interval_and_find_event(m)
 
 
-def begin_interval(m):
+def write_interval_and_find_event(m):
     set_spacing(m)
     write_input_series(m, m[at.SPACING])
     write_interval_series(m)
@@ -114,7 +114,7 @@ def run_to(m, time):
         elif begun + m[at.SPACING] <= local:
             write_states_at(m, at.STATE, 1.0)
             m[at.INTERVAL] += 1.0
-            begin_interval(m)
+            write_interval_and_find_event(m)
         else:
             return at.OK
         m[at.WORK] += 1.0

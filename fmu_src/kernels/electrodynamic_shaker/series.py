@@ -27,9 +27,9 @@ def write_interval_series(m):
     else:
         write_source_into(m, driver)
     if driven:
-        write_motion_of_voltage(m, m[at.SPACING])
+        write_motion_and_current_series(m, m[at.SPACING])
     else:
-        write_motion_of_current(m, m[at.SPACING])
+        write_motion_and_voltage_series(m, m[at.SPACING])
     write_energy_series(m, m[at.SPACING], driven)
 
 
@@ -61,7 +61,7 @@ def opposing_voltage_term(m, k):
     return drop + m[at.FORCE_FACTOR] * m[at.VELOCITY_SERIES + k]
 
 
-def write_motion_of_voltage(m, h):
+def write_motion_and_current_series(m, h):
     """Write the series of motion and current for the voltage in VOLTAGE_SERIES."""
     inductance = m[at.COIL_INDUCTANCE]
     m[at.POSITION_SERIES] = m[at.STATE + at.POSITION]
@@ -84,7 +84,7 @@ def current_term_without_inductance(m, k):
     return rest / m[at.COIL_RESISTANCE]
 
 
-def write_motion_of_current(m, h):
+def write_motion_and_voltage_series(m, h):
     """Write the series of motion and voltage for the current in CURRENT_SERIES."""
     m[at.POSITION_SERIES] = m[at.STATE + at.POSITION]
     m[at.VELOCITY_SERIES] = m[at.STATE + at.VELOCITY]

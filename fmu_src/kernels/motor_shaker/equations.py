@@ -42,6 +42,12 @@ def current_without_inductance(m, speed):
     return (m[at.VOLTAGE] - m[at.MOTOR_CONSTANT] * speed) / m[at.ARMATURE_RESISTANCE]
 
 
+def box_right_side(m, position, velocity, speed, sine, pushed):
+    """Return the right-hand side of (a), N, for a force ``pushed`` on the box."""
+    p = m[at.UNBALANCE] * speed * speed * sine - m[at.BOX_DAMPING] * velocity
+    return p - m[at.BOX_STIFFNESS] * position + pushed
+
+
 def box_and_rotor_accelerations(m, sine, cosine, p, q):
     """Return y'' and w' that (a) and (b) have for right-hand sides ``p`` and ``q``."""
     mass, inertia, coupling = m[at.BOX_MASS], m[at.ROTOR_INERTIA], m[at.UNBALANCE] * cosine
@@ -69,9 +75,7 @@ def write_rates(m, stage, t):
         current = current_without_inductance(m, speed)
     torque = m[at.MOTOR_CONSTANT] * current  # right-hand side of (b)
     pushed = box_force_at(m, t)
-    damped = m[at.BOX_DAMPING] * velocity
-    # right-hand side of (a)
-    p = m[at.UNBALANCE] * speed * speed * sine - damped - m[at.BOX_STIFFNESS] * position + pushed
+    p = box_right_side(m, position, velocity, speed, sine, pushed)
     box, rotor = box_and_rotor_accelerations(m, sine, cosine, p, torque)
     row = at.RATES + stage * at.STATES
     m[row + at.POSITION] = velocity
@@ -80,5 +84,5 @@ def write_rates(m, stage, t):
     m[row + at.ROTATION_SPEED] = rotor
     m[row + at.CURRENT] = current_rate
     m[row + at.MOTOR_WORK] = torque * speed
-    m[row + at.DAMPER_LOSS] = damped * velocity
+    m[row + at.DAMPER_LOSS] = m[at.BOX_DAMPING] * velocity * velocity
     m[row + at.FORCE_WORK] = pushed * velocity

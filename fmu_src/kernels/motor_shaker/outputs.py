@@ -5,7 +5,12 @@ The states reached, and what follows from them with the inputs as they are now.
 
 from ..numerics.elementary import sincos_turns
 from . import memory as at
-from .equations import box_and_rotor_accelerations, box_force_and_rates, current_without_inductance
+from .equations import (
+    box_and_rotor_accelerations,
+    box_force_and_rates,
+    box_right_side,
+    current_without_inductance,
+)
 
 
 def write_outputs(m):
@@ -18,9 +23,7 @@ def write_outputs(m):
         else current_without_inductance(m, speed)
     )
     torque = m[at.MOTOR_CONSTANT] * current
-    unbalance = m[at.UNBALANCE]
-    p = unbalance * speed * speed * sine - m[at.BOX_DAMPING] * velocity
-    p = p - m[at.BOX_STIFFNESS] * position + box_force_and_rates(m)[0]
+    p = box_right_side(m, position, velocity, speed, sine, box_force_and_rates(m)[0])
     box, rotor = box_and_rotor_accelerations(m, sine, cosine, p, torque)
     m[at.BOX_POSITION] = position
     m[at.BOX_VELOCITY] = velocity
@@ -36,7 +39,7 @@ def write_outputs(m):
     kinetic = (
         0.5 * m[at.BOX_MASS] * velocity * velocity
         + 0.5 * m[at.ROTOR_INERTIA] * speed * speed
-        + unbalance * velocity * speed * cosine
+        + m[at.UNBALANCE] * velocity * speed * cosine
     )
     m[at.STORED_ENERGY] = kinetic + 0.5 * m[at.BOX_STIFFNESS] * position * position
 

@@ -2,19 +2,20 @@
 
 from ..numerics.elementary import sincos_turns
 from . import memory as at
-from .equations import box_and_rotor_accelerations, box_force_and_rates
+from .equations import box_and_rotor_accelerations, box_force_and_rates, box_right_side
 from .outputs import box_and_rotor_jerks, current_rate
 
 
 def differentiate(m, time):
     """Write the rates of change of the outputs into OUTPUT_RATES; ``time`` is not used."""
     sine, cosine = sincos_turns(m[at.TURN])
-    box, speed = m[at.BOX_ACCELERATION], m[at.SPEED]
-    rotor = rotor_acceleration(m, sine, cosine)
+    box, speed, pushed = m[at.BOX_ACCELERATION], m[at.SPEED], box_force_and_rates(m)[0]
+    p = box_right_side(m, m[at.BOX_POSITION], m[at.BOX_VELOCITY], speed, sine, pushed)
+    rotor = box_and_rotor_accelerations(m, sine, cosine, p, m[at.MOTOR_TORQUE])[1]
     current = current_rate(m, rotor)
     torque = m[at.MOTOR_CONSTANT] * current
     damping = m[at.BOX_DAMPING] * m[at.BOX_VELOCITY] * m[at.BOX_VELOCITY]
-    work = box_force_and_rates(m)[0] * m[at.BOX_VELOCITY]
+    work = pushed * m[at.BOX_VELOCITY]
     to = at.OUTPUT_RATES - at.BOX_POSITION
     m[to + at.BOX_POSITION] = m[at.BOX_VELOCITY]
     m[to + at.BOX_VELOCITY] = box
@@ -30,18 +31,6 @@ def differentiate(m, time):
     m[to + at.BOX_FORCE_WORK] = work
     m[to + at.STORED_ENERGY] = m[at.MOTOR_POWER] + work - damping
     return at.OK
-
-
-def box_equation_right_side(m, sine):
-    speed = m[at.SPEED]
-    p = m[at.UNBALANCE] * speed * speed * sine - m[at.BOX_DAMPING] * m[at.BOX_VELOCITY]
-    return p - m[at.BOX_STIFFNESS] * m[at.BOX_POSITION] + box_force_and_rates(m)[0]
-
-
-def rotor_acceleration(m, sine, cosine):
-    return box_and_rotor_accelerations(
-        m, sine, cosine, box_equation_right_side(m, sine), m[at.MOTOR_TORQUE]
-    )[1]
 
 
 def box_snap(m, sine, cosine, b):

@@ -246,8 +246,8 @@ def evaluate_event_function(m, tau):  # inline
     if m[at.SERIES] != 0.0:  # rarely
         h0, h1, h2, h3, h4 = gap_and_derivatives(m, tau)
         return h0, h1, h2, h3, h4, m[at.SERIES_BOUND]
-    x, x_b, v, v_b, cosine, sine = phasors_at(m, tau)
-    write_phasors(m, at.POINT, x, x_b, v, v_b, cosine, sine)
+    x, v, x_b, v_b, cosine, sine = phasors_at(m, tau)
+    write_phasors(m, at.POINT, x, v, x_b, v_b, cosine, sine)
     time = AHEAD * m[at.SPACING]
     driven = 0.0
     if m[at.SECULAR] != 0.0:  # rarely

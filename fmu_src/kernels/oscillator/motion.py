@@ -57,8 +57,8 @@ def state_at(m, tau):
         x1, v1 = taylor_value(m, at.SERIES_X, tau), taylor_value(m, at.SERIES_X + 2, tau)
         gap, slope = taylor_value(m, at.SERIES_GAP, tau), taylor_value(m, at.SERIES_GAP + 2, tau)
         return x1, v1, x1 + gap if gap > 0.0 else x1, v1 + slope
-    x_a, x_b, v_a, v_b, cosine, sine = phasors_at(m, tau)
-    return state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
+    x_a, v_a, x_b, v_b, cosine, sine = phasors_at(m, tau)
+    return state_from_phasors(m, tau, x_a, v_a, x_b, v_b, cosine, sine)
 
 
 def state_at_end(m):
@@ -84,7 +84,7 @@ def state_after_brief_contact(m, tau):
     return x + way, v + tau * (x2 + tau * (0.5 * x3 + tau * x4 * (1.0 / 6.0)))
 
 
-def state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
+def state_from_phasors(m, tau, x_a, v_a, x_b, v_b, cosine, sine):  # inline
     if m[at.MODE] == at.FLIGHT:
         x1, v1 = displacement_and_velocity(
             m, at.HARMONIC_1, at.CUBIC_A, tau, x_a, v_a, sine, cosine
@@ -137,8 +137,8 @@ def displacements_from_rest_together(m, x1, x2):
 
 def state_and_phase_at(m, tau):  # inline
     if tau != 0.0 and m[at.SERIES] == 0.0 and m[at.NODE_ETA] != 0.0:
-        x_a, x_b, v_a, v_b, cosine, sine = phasors_at(m, tau)
-        x1, v1, x2, v2 = state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
+        x_a, v_a, x_b, v_b, cosine, sine = phasors_at(m, tau)
+        x1, v1, x2, v2 = state_from_phasors(m, tau, x_a, v_a, x_b, v_b, cosine, sine)
         return x1, v1, x2, v2, cosine, sine
     x1, v1, x2, v2 = state_at(m, tau)
     cosine, sine = m[at.COSINE], m[at.SINE]

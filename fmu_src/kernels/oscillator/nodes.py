@@ -121,11 +121,11 @@ def set_right_phasors(m, node):
     write_phasors(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
 
 
-def write_phasors(m, slot, p0, p1, p2, p3, cosine, sine):
-    m[slot] = p0
-    m[slot + 1] = p1
-    m[slot + 2] = p2
-    m[slot + 3] = p3
+def write_phasors(m, slot, x, v, x_b, v_b, cosine, sine):
+    m[slot] = x
+    m[slot + 1] = v
+    m[slot + 2] = x_b
+    m[slot + 3] = v_b
     m[slot + 4] = cosine
     m[slot + 5] = sine
 
@@ -245,7 +245,7 @@ def move_to_interval_at(m, tau):
 
 
 def phasors_at(m, tau):  # inline
-    """Return x_a, x_b, v_a, v_b, cosine, sine at an age, from the nearer node."""
+    """Return x_a, v_a, x_b, v_b, cosine, sine at an age, from the nearer node."""
     if tau < m[at.LEFT_AGE] or tau > m[at.RIGHT_AGE]:  # rarely
         move_to_interval_at(m, tau)
     node, t = at.LEFT, tau - m[at.LEFT_AGE]
@@ -258,10 +258,10 @@ def phasors_at(m, tau):  # inline
         s *= angle
         cosine, sine = cosine * c - sine * s, sine * c + cosine * s
     if m[at.STEEP] == 0.0 and m[at.SECULAR] == 0.0:  # usually
-        x_a, x_b, v_a, v_b = free_parts_near_node(m, node, t)
+        x_a, v_a, x_b, v_b = free_parts_near_node(m, node, t)
     else:
-        x_a, x_b, v_a, v_b = free_parts_by_functions(m, tau, cosine, sine)
-    return x_a, x_b, v_a, v_b, cosine, sine
+        x_a, v_a, x_b, v_b = free_parts_by_functions(m, tau, cosine, sine)
+    return x_a, v_a, x_b, v_b, cosine, sine
 
 
 def set_phasors_at_near_end(m, age):
@@ -269,16 +269,15 @@ def set_phasors_at_near_end(m, age):
     if age * m[at.RATE] > NEAR or m[at.SECULAR] != 0.0:  # rarely
         return
     p = at.POINT
-    x, v = free_part_by_series(m, oscillator_of_part_a(m), m[p], m[p + 2], age)
-    x_b, v_b = free_part_by_series(
-        m, at.OSCILLATOR_2, m[p + 1], m[p + 3], age
-    )  # zeros but in a flight
+    x, v = free_part_by_series(m, oscillator_of_part_a(m), m[p], m[p + 1], age)
+    # zeros but in a flight
+    x_b, v_b = free_part_by_series(m, at.OSCILLATOR_2, m[p + 2], m[p + 3], age)
     angle = m[at.NODE_ETA] * age
     square = angle * angle
     c = 1.0 - square * (0.5 - square * (1.0 / 24.0))
     s = angle * (1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0)))
     cosine, sine = m[p + 4], m[p + 5]
-    write_phasors(m, at.AT_END, x, x_b, v, v_b, cosine * c - sine * s, sine * c + cosine * s)
+    write_phasors(m, at.AT_END, x, v, x_b, v_b, cosine * c - sine * s, sine * c + cosine * s)
     m[at.AT_END_NODE] = m[at.NODE] + 1.0
 
 
@@ -309,9 +308,9 @@ def free_parts_by_functions(m, tau, cosine, sine):
     phases = m[p + 4], m[p + 5], cosine, sine
     x_a, v_a = driven_free_part_after(m, oscillator_of_part_a(m), m[p], m[p + 1], t, phases)
     if m[at.MODE] != at.FLIGHT:
-        return x_a, 0.0, v_a, 0.0
+        return x_a, v_a, 0.0, 0.0
     x_b, v_b = driven_free_part_after(m, at.OSCILLATOR_2, m[p + 2], m[p + 3], t, phases)
-    return x_a, x_b, v_a, v_b
+    return x_a, v_a, x_b, v_b
 
 
 def free_parts_near_node(m, node, t):  # inline
@@ -319,13 +318,13 @@ def free_parts_near_node(m, node, t):  # inline
     decay = small_decay(m[oscillator_of_part_a(m) + at.DAMPING] * t)
     if m[at.MODE] != at.FLIGHT:
         x_a, v_a = free_part_near_node(m, at.OSCILLATOR_3, node, t, decay)
-        return x_a, 0.0, v_a, 0.0
+        return x_a, v_a, 0.0, 0.0
     decay_b = decay
     if m[at.OSCILLATOR_1 + at.DAMPING] != m[at.OSCILLATOR_2 + at.DAMPING]:  # rarely
         decay_b = small_decay(m[at.OSCILLATOR_2 + at.DAMPING] * t)
     x_a, v_a = free_part_near_node(m, at.OSCILLATOR_1, node, t, decay)
     x_b, v_b = free_part_near_node(m, at.OSCILLATOR_2, node + 2, t, decay_b)
-    return x_a, x_b, v_a, v_b
+    return x_a, v_a, x_b, v_b
 
 
 def free_part_near_node(m, b, free, t, decay):  # inline

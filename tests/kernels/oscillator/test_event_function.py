@@ -10,8 +10,8 @@ import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
-from fmu_src.kernels.numerics.first_root import INFINITE
-from fmu_src.kernels.oscillator import event_function, secular
+from fmu_src.kernels.numerics.first_root import EPS, INFINITE
+from fmu_src.kernels.oscillator import event_function, maximum, nodes, secular
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.contact import first_nonzero_force_derivative
 from fmu_src.kernels.oscillator.motion import begin_contact_or_glued
@@ -324,3 +324,13 @@ def test_what_a_quintic_may_miss_of_a_growing_amplitude(values):
     ages = np.linspace(0.0, secular.LONGEST_DRIVEN * m[at.SPACING], 200)
     largest = np.abs(signal.sample(ages)).max()
     assert 0.3 * found < largest <= found
+
+
+def test_the_rounding_of_a_gap_is_that_of_its_terms():
+    """Each half's displacement with its own velocity, which counts where it is strongly damped."""
+    m = flight(-0.9, 3.0, 0.0, -4.0, d1=1.5, d2=0.2, box_amplitude=0.0, clearance=9.0)
+    event_function.evaluate_event_function(m, 0.7)
+    x_a, v_a, x_b, v_b, _, _ = nodes.phasors_at(m, 0.7)
+    free = ((at.OSCILLATOR_1, x_a, v_a), (at.OSCILLATOR_2, x_b, v_b))
+    size = 9.0 + sum(event_function.envelope_bound(m, *part) for part in free)
+    assert maximum.gap_rounding(m, 0.7) / (2.0 * EPS) == pytest.approx(size, rel=1e-12)

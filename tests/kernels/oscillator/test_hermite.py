@@ -153,7 +153,7 @@ def closed_form(m, age):
     sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * age)
     x_a, v_a = nodes.free_part_after(m, at.OSCILLATOR_1, m[at.FREE_A], m[at.FREE_A + 1], age)
     x_b, v_b = nodes.free_part_after(m, at.OSCILLATOR_2, m[at.FREE_B], m[at.FREE_B + 1], age)
-    return x_a, x_b, v_a, v_b, cosine, sine
+    return x_a, v_a, x_b, v_b, cosine, sine
 
 
 @examples(60)
@@ -169,7 +169,7 @@ def test_they_are_those_of_the_closed_form(values, ages):
             if k >= 4:
                 assert error <= 1e-15 * (8.0 + m[at.ETA] * age), k
             else:
-                assert error <= 4e-15 * size * (rate if k >= 2 else 1.0) * (8.0 + rate * age), k
+                assert error <= 4e-15 * size * (rate if k % 2 else 1.0) * (8.0 + rate * age), k
 
 
 @examples(40)

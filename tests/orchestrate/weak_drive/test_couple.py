@@ -101,7 +101,7 @@ def test_revolutions_are_the_turns_that_are_new():
     table[[names.index(name) for name in columns]] = np.array(list(columns.values()))
     revolutions, found = Revolutions(QUICK.structure), []
     for ends in np.split(np.arange(count), [7, 100, 101]):
-        found += revolutions.complete_revolutions(Record(names, table, ends)).tolist()
+        found += revolutions.complete_revolutions(Record(names, table, ends, np.empty((0, 0)))).tolist()
     expected = completed(*columns.values())
     assert len(found) > 100 and len({row[2] > 0.0 for row in found}) == 2
     assert [tuple(row) for row in found] == expected

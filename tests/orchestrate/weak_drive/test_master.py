@@ -130,14 +130,18 @@ def test_it_goes_on_with_the_same_bits(system):
     controlled, start = Scheme(0.4, 1e-7), rest(1.2, system.structure)
     with master(system, controlled, start) as m:
         m.run([1.5] * 41)
-        kept = m.get_state(), m.oscillator.instance.save_state(), m.drive.instance.save_state()
+        kept = (
+            m.numbers_to_resume(),
+            m.oscillator.instance.save_state(),
+            m.drive.instance.save_state(),
+        )
         assert m["level"] > 0
         m.run([1.5] * 41)
         expected = state_of(m)
     with master(system, controlled, start) as m:
         m.oscillator.instance.restore_state(kept[1])
         m.drive.instance.restore_state(kept[2])
-        m.set_state(kept[0])
+        m.resume_from(kept[0])
         m.run([1.5] * 41)
         assert state_of(m) == expected
 
