@@ -15,7 +15,7 @@ eta0 = U/(K omega).
 
 from __future__ import annotations
 
-import math
+from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -34,9 +34,8 @@ FOLD, TORUS = Kind.FOLD.label, Kind.TORUS.label
 class BifurcationPoint(NamedTuple):
     """Store a bifurcation point of the branch: voltage, speed, and fold or Neimark-Sacker."""
 
-    # voltage and speed
-    eta0: float
-    Omega: float
+    eta0: float  # voltage
+    Omega: float  # speed
     kind: str  # `"fold"` or `"Neimark-Sacker"`
 
 
@@ -51,6 +50,13 @@ def mechanical_polynomials(
     omega_b = drive.Omega_b(structure)
     box = Polynomial([omega_b**2, 2.0 * drive.D_b(structure), 1.0])
     return pull, masses, box
+
+
+@lru_cache(maxsize=64)
+def response_polynomials(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
+    """Return numerator and denominator of H(s), from box force to box position."""
+    pull, masses, box = mechanical_polynomials(structure, drive)
+    return pull + masses, box * (pull + masses) + pull * masses
 
 
 def transfer_functions(
@@ -89,8 +95,7 @@ def bonded_resonance_half_width(structure: Structure, drive: Drive) -> float:
 
 def free_vibration_roots(structure: Structure, drive: Drive) -> np.ndarray:
     """Return the complex eigenvalues of free vibration of bonded masses and box, over omega."""
-    pull, masses, box = mechanical_polynomials(structure, drive)
-    return np.asarray((box * (pull + masses) + pull * masses).roots())
+    return np.asarray(response_polynomials(structure, drive)[1].roots())
 
 
 def eta_between_box_and_bonded_resonance(structure: Structure, drive: Drive) -> float:
@@ -103,15 +108,13 @@ def eta_between_box_and_bonded_resonance(structure: Structure, drive: Drive) -> 
     return float(speeds[np.argmin(stationary_voltage(structure, drive, speeds) - speeds)])
 
 
-def folds(
-    structure: Structure, drive: Drive, low: float | None = None, high: float = math.inf
-) -> list[BifurcationPoint]:
+def folds(structure: Structure, drive: Drive) -> list[BifurcationPoint]:
     """Find the folds of the averaged branch, where the speed jumps (Sommerfeld effect)."""
-    numerator, denominator = slope_polynomials(structure, drive)
+    numerator, _ = slope_polynomials(structure, drive)
     roots = numerator.roots()
     real = np.sort(roots.real[np.abs(roots.imag) < 1e-6 * np.abs(roots)])
-    low = eta_between_box_and_bonded_resonance(structure, drive) if low is None else low
-    speeds = [polish_root(numerator, root) for root in real if low <= root <= high]
+    low = eta_between_box_and_bonded_resonance(structure, drive)
+    speeds = [polish_root(numerator, root) for root in real if root >= low]
     return [
         BifurcationPoint(float(stationary_voltage(structure, drive, w)), w, FOLD) for w in speeds
     ]
@@ -128,12 +131,10 @@ def bonded_dividing_speed(structure: Structure, drive: Drive) -> float:
 
 def slope_polynomials(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
     """Return numerator and denominator of the slope d eta0 / d Omega as polynomials in Omega."""
-    parts = mechanical_polynomials(structure, drive)
-    pull, masses, box = (  # with s = i Omega
-        Polynomial(np.asarray(part.coef, dtype=complex) * 1j ** np.arange(len(part.coef)))
-        for part in parts
+    above, below = (  # with s = i Omega
+        Polynomial(part.coef * 1j ** np.arange(len(part.coef)))
+        for part in response_polynomials(structure, drive)
     )
-    above, below = pull + masses, box * (pull + masses) + pull * masses
     conjugate = Polynomial(below.coef.conj())
     torque = Polynomial((above * conjugate).coef.imag) * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
     size = Polynomial((1j * below * conjugate).coef.imag)  # |below|^2
@@ -143,12 +144,11 @@ def slope_polynomials(structure: Structure, drive: Drive) -> tuple[Polynomial, P
 
 def growth_rates(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
     """Return a motion's complex growth rates of slow disturbances, the fastest growing first."""
-    pull, masses, box = mechanical_polynomials(structure, drive)
-    above = (pull + masses) * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
-    below = box * (pull + masses) + pull * masses
-    at, side = 1j * Omega, Polynomial([1j * Omega, 1.0])
-    sides = [(above(shift), below(shift)) for shift in (side, Polynomial([-at, 1.0]))]
-    (top, bottom), (other_top, other_bottom) = sides
+    numerator, below = response_polynomials(structure, drive)
+    above = numerator * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
+    at = 1j * Omega
+    top, bottom = (part(Polynomial([at, 1.0])) for part in (above, below))
+    other_top, other_bottom = (Polynomial(part.coef.conj()) for part in (top, bottom))
     lag = drive.armature_inductance / drive.armature_resistance * structure.omega
     late = Polynomial([1.0, lag])
     still = 0.5 * complex(above(at) / below(at)).real
@@ -159,9 +159,7 @@ def growth_rates(structure: Structure, drive: Drive, Omega: float) -> np.ndarray
     return np.asarray(roots[np.argsort(-roots.real)])
 
 
-def neimark_sacker_points(
-    structure: Structure, drive: Drive, count: int = 151
-) -> list[BifurcationPoint]:
+def neimark_sacker_points(structure: Structure, drive: Drive) -> list[BifurcationPoint]:
     """Find the Neimark-Sacker points, where a slow oscillation of the speed starts to grow."""
     from scipy.optimize import brentq
 
@@ -172,7 +170,7 @@ def neimark_sacker_points(
 
     peak = bonded_resonance(structure, drive)
     low = eta_between_box_and_bonded_resonance(structure, drive)
-    speeds = np.linspace(max(0.8 * peak, low), 1.5 * peak, count)
+    speeds = np.linspace(max(0.8 * peak, low), 1.5 * peak, 151)
     signs = np.sign([hurwitz_product(Omega) for Omega in speeds])
     points = []
     for i in np.flatnonzero(signs[1:] != signs[:-1]):

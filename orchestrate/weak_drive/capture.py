@@ -97,8 +97,17 @@ class CaptureJob(Job):
             return CaptureOutcome(NO_LOAD)
         schedule = Constant(voltage, self.time_limit(system))
         job = make_couple_job(*system, schedule, self.scheme, 0.0, self.control)
+        steps, first, times, speeds = range(job.step_count()), 0, np.zeros(0), np.zeros(0)
         with closing(start_run(job)) as run:
-            return run_until_settled(run, range(job.step_count()), test.judge_record)
+            while first < len(steps):
+                piece = steps[first : first + max(500, first // 5)]
+                rows = run.run_steps_by_revolution(piece)
+                times, speeds = np.append(times, rows["time"]), np.append(speeds, rows["speed"])
+                outcome = test.judge_record(times, speeds)
+                if outcome.decision != UNDECIDED:
+                    return outcome
+                first = piece.stop
+        return CaptureOutcome(UNDECIDED)
 
     def time_limit(self, system: System) -> float:
         """Return the longest simulated time of a start, s; after it it is undecided."""
@@ -152,22 +161,6 @@ class CaptureJob(Job):
             return math.nan
         folds = averaged.folds(structure, drive)
         return max((fold.eta0 for fold in folds), default=math.nan) * drive.volts(structure)
-
-
-def run_until_settled(
-    run: MotorRun, steps: range, decide: Callable[[np.ndarray, np.ndarray], CaptureOutcome]
-) -> CaptureOutcome:
-    times, speeds = np.zeros(0), np.zeros(0)
-    first = 0
-    while first < len(steps):
-        piece = steps[first : first + max(500, first // 5)]
-        rows = run.run_steps_by_revolution(piece)
-        times, speeds = np.append(times, rows["time"]), np.append(speeds, rows["speed"])
-        outcome = decide(times, speeds)
-        if outcome.decision != UNDECIDED:
-            return outcome
-        first += len(piece)
-    return CaptureOutcome(UNDECIDED)
 
 
 class BracketEnd(NamedTuple):
@@ -320,8 +313,8 @@ def capture(
     system = System(structure, drive)
     parameter_values = checked_parameter_values(over, values, system)
     low, high = checked_pair("voltage", voltage, "(lowest, highest) in V")
-    checked_range("voltage", low, "V", low=0.0)
-    checked_range("voltage", high, "V", low=0.0)
+    for end in (low, high):
+        checked_range("voltage", end, "V", low=0.0)
     if not low < high:
         raise InputError(f"voltage = ({low:g}, {high:g}) V: expected (lowest, highest)")
     voltages = tuple(np.linspace(low, high, checked_integer("count", count, 2)).tolist())

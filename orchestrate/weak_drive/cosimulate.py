@@ -21,13 +21,7 @@ from ..fmu.exported import make_fmu_finder
 from ..fmu.instance import REAL_TYPES
 from ..fmu.models import ELECTRODYNAMIC_SHAKER, MOTOR_SHAKER
 from ..lazy import Unpack, xr
-from ..model.arguments import (
-    Count,
-    checked_mapping,
-    checked_path,
-    checked_texts,
-    checked_word,
-)
+from ..model.arguments import Count, checked_mapping, checked_path, checked_texts, checked_word
 from ..model.drive import Drive
 from ..model.ranges import checked_range
 from ..model.shaker import Shaker
@@ -40,11 +34,11 @@ from .connection import FORCE, MOTION, OURS, checked_links, checked_units, check
 from .controllers import InputControl
 from .cosimulation_job import AT_THE_DURATION, IN_TIME_TOO, CosimulateJob, Values
 from .inputs import Input, check_input_connections
+from .master import MAX_STEPS_KEPT
 from .schedule import Course
 
 # in place of the structure where there is none: the drive does not feel it
 BALLAST = Structure(m1=1.0, m2=1.0, k1=1.0, k2=1.0, bonded=True)
-MAX_STEPS = 10_000_000
 ForceSign = Literal["tested", "given"]
 NOTICED = 0.01  # of the largest displacement: a larger coupling error gives a warning
 RESOLVED = 0.5  # of a drive's response to a force at once, its mean over a step, else a warning
@@ -173,9 +167,8 @@ def cosimulate(
     links = checked_links(connect, description, units, structure is None)
     for name, value in (("duration", duration), ("step", step)):
         checked_range(name, value, "s", low=0.0, open_low=True)
-    checked_range("duration/step", duration / step, high=MAX_STEPS)
-    check_internal_step(duration, step, description, estimate)
-    count = checked_step_count(duration, step, description)
+    checked_range("duration/step", duration / step, high=MAX_STEPS_KEPT)
+    step = checked_step(duration, step, description, estimate)
     estimate = estimate and structure is not None
     checked = checked_structure(BALLAST if structure is None else structure)
     job = CosimulateJob(
@@ -189,7 +182,7 @@ def cosimulate(
         units=tuple(units.items()),
         start_values=checked_parameters(parameters, description),
         inputs=checked_inputs(inputs, description, duration),
-        step=float(duration) / count,
+        step=step,
         record=checked_recorded_names(record, description),
         start=checked_state("start", start, checked),
         force_sign=checked_word("force_sign", force_sign, get_args(ForceSign)),
@@ -203,32 +196,25 @@ def cosimulate(
     return found
 
 
-def checked_step_count(duration: float, step: float, drive: Description) -> int:
-    """Return the number of steps; raise ``InputError`` if a drive of equal steps has a rest."""
+def checked_step(duration: float, step: float, drive: Description, estimate: bool) -> float:
+    """Return the length of equal steps; raise ``InputError`` if the drive cannot take such ones."""
     count = max(1, math.ceil(duration / step - 1e-9))
-    if drive.has_fixed_step and not math.isclose(count * step, duration, rel_tol=1e-9):
-        raise InputError(
-            f"duration = {duration} s, step = {step} s: the FMU {drive.name} takes only steps "
-            "of one length; expected a duration that is a whole number of steps"
-        )
-    return count
-
-
-def check_internal_step(duration: float, step: float, drive: Description, estimate: bool) -> None:
-    """Raise ``InputError`` unless all steps are multiples of the drive's internal one."""
     internal, parts = drive.internal_step, 2 if estimate else 1
-    if not internal:
-        return
-    taken = duration / max(1, math.ceil(duration / step - 1e-9)) / parts
-    if round(taken / internal) < 1 or not math.isclose(
-        taken, round(taken / internal) * internal, rel_tol=1e-9
-    ):
+    taken = duration / count / parts
+    multiple = round(taken / internal) if internal else 0
+    if internal and (multiple < 1 or not math.isclose(taken, multiple * internal, rel_tol=1e-9)):
         why = ", half of which is for the error's estimate" if estimate else ""
         raise InputError(
             f"step = {step} s: the FMU {drive.name} calculates in steps of {internal:g} s "
             f"(fixedInternalStepSize); expected a multiple of {parts * internal:g} s{why}, and a "
             "duration that is a whole number of steps"
         )
+    if drive.has_fixed_step and not math.isclose(count * step, duration, rel_tol=1e-9):
+        raise InputError(
+            f"duration = {duration} s, step = {step} s: the FMU {drive.name} takes only steps "
+            "of one length; expected a duration that is a whole number of steps"
+        )
+    return float(duration) / count
 
 
 def checked_parameters(parameters: Mapping[str, Any], drive: Description) -> Values:
@@ -275,41 +261,27 @@ def checked_recorded_names(record: Any, drive: Description) -> tuple[str, ...]:
 
 
 def warn_of_run(run: xr.Dataset, links: Container[str], estimate: bool) -> None:
-    repeat_drive_warnings(run)
-    unconnected = [name for name in MOTION if name not in links]
-    unconnected = unconnected if len(unconnected) < len(MOTION) else []
-    if unconnected:
-        warn_of_long_step(run, unconnected)
-    if estimate:
-        warn_of_coupling_error(run, unconnected)
-
-
-def repeat_drive_warnings(run: xr.Dataset) -> None:
-    """Warn with what the drive warned of, each text once, and where it ended the simulation."""
-    attributes = getattr(run, "attrs", {})
-    for text in attributes.get("drive_warnings", "").splitlines():
-        warnings.warn(text, stacklevel=4)
+    """Warn with what the drive warned of, of an early end, a step that is too long, and errors."""
+    attributes = getattr(run, "attrs", {})  # of a job alone none
+    texts = attributes.get("drive_warnings", "").splitlines()
     if (ended := attributes.get("ended", AT_THE_DURATION)) != AT_THE_DURATION:
-        warnings.warn(f"{ended}; the result ends there", stacklevel=4)
-
-
-def warn_of_long_step(run: xr.Dataset, unconnected: Sequence[str]) -> None:
-    """Warn where the drive is not seen to follow a force as a mass does within a step."""
-    share = getattr(run, "attrs", {}).get("response_in_a_step", math.nan)
-    if share < RESOLVED:
+        texts.append(f"{ended}; the result ends there")
+    unconnected = ", ".join(name for name in MOTION if name not in links)
+    unconnected = "" if unconnected == ", ".join(MOTION) else unconnected
+    share = attributes.get("response_in_a_step", math.nan)
+    if unconnected and share < RESOLVED:
         text = f"a force accelerates the box by {share:.2g} in a step, where it does by 1 at once: "
         text += "the step is too long for the drive's own motion"
-        warnings.warn(f"{text}; reduce it or connect {', '.join(unconnected)}", stacklevel=4)
-
-
-def warn_of_coupling_error(run: xr.Dataset, unconnected: Sequence[str]) -> None:
-    """Warn where the coupling's error may hide or make impacts, and what to connect."""
-    if "coupling_error" not in getattr(run, "data_vars", ()):  # a job alone
-        return
-    size = max(float(abs(run[name]).max()) for name in ("x1", "x2"))
-    error = float(run.coupling_error.max())
-    if error > NOTICED * size:
-        more = f" and connect {', '.join(unconnected)} if the drive has it" if unconnected else ""
-        text = f"coupling error {error:.2g} m of displacements up to {size:.2g} m: "
-        text += "it diverges: look at units" if error > size else "impacts may be missed or added"
-        warnings.warn(f"{text}; reduce the step{more}", stacklevel=4)
+        texts.append(f"{text}; reduce it or connect {unconnected}")
+    if estimate and "coupling_error" in getattr(run, "data_vars", ()):
+        size = max(float(abs(run[name]).max()) for name in ("x1", "x2"))
+        error = float(run.coupling_error.max())
+        if error > NOTICED * size:  # it may hide impacts or make some
+            more = f" and connect {unconnected} if the drive has it" if unconnected else ""
+            text = f"coupling error {error:.2g} m of displacements up to {size:.2g} m: "
+            text += (
+                "it diverges: look at units" if error > size else "impacts may be missed or added"
+            )
+            texts.append(f"{text}; reduce the step{more}")
+    for text in texts:
+        warnings.warn(text, stacklevel=3)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, get_type_hints
 
@@ -23,13 +22,12 @@ from . import averaged, own_resonance
 from .controllers import Controller
 from .growth import growth_rate
 from .hysteresis import LOST, UNDECIDED, HysteresisLoop, HysteresisSettings, Jump
-from .master import Scheme
+from .master import MAX_STEPS, Scheme
 from .ramp_record import DONE, RampRecord, jump_labels, ramp_jump_variables, time_stays_above
 from .revolutions import COLUMNS
 from .run import MotorJob, motor_run_starter
 from .schedule import Constant, Ramp, Schedule
 
-MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 DIRECTIONS = ("up", "down")
 KINDS = ("bonded", "delaminated")  # of structures that runs compare
 VERDICT = np.dtype([("up", bool), ("jump", [*get_type_hints(Jump).items()])])
@@ -106,7 +104,13 @@ class CoupleJob(MotorJob):
         labels, jump_columns = self.jump_labels_and_variables(table)
         names = {"long_name": "direction in which the speed jumps; further jumps are numbered"}
         coordinates["jump"] = ("jump", np.array(labels), names)
-        return xr.Dataset({**variables, **jump_columns}, coordinates, self.attributes(table))
+        motor = float(table["motor"][-1])
+        attributes = {
+            "title": f"Weak drive, {self.structure.kind} structure: each revolution of the motor",
+            "missing_over_motor_work": float(table["missing"][-1]) / motor,
+            "defects_over_motor_work": float(table["defect_sizes"][-1]) / motor,
+        }
+        return xr.Dataset({**variables, **jump_columns}, coordinates, attributes)
 
     def jump_labels_and_variables(self, table: Table) -> tuple[list[str], dict[str, Variable]]:
         records = [RampRecord(self, table, up) for up in (True, False)]
@@ -119,7 +123,19 @@ class CoupleJob(MotorJob):
             for jump, record in zip(every, records_of, strict=True)
         ]
         columns = ramp_jump_variables(records[0].forward_table(), shown)
-        columns |= bracket_variables(every, columns, self.drive.volts(self.structure))
+        volts = self.drive.volts(self.structure)
+        lows = np.array([volts * jump.low if jump else math.nan for jump in every])
+        highs = np.array([volts * jump.high if jump else math.nan for jump in every])
+        lost = [jump is not None and jump.outcome == LOST for jump in every]
+        middles = np.where(lost, 0.5 * (lows + highs), math.nan)
+        late = columns["ramp_voltage"][1] - middles
+        texts = {
+            "jumps": (middles, "voltage at which the motion is lost, whatever the ramp's rate"),
+            "jump_low": (lows, "last held voltage at which the motion stays"),
+            "jump_high": (highs, "first at which it is lost, or may be"),
+            "jump_lag": (late, "how late the ramp shows the jump"),
+        }
+        columns |= {n: variable("jump", values, "V", text) for n, (values, text) in texts.items()}
         columns |= self.theory_variables(len(every))
         for name in MIRRORED & columns.keys() if records[0].rotation_sense < 0.0 else ():
             dims, values, attributes = columns[name]
@@ -161,32 +177,6 @@ class CoupleJob(MotorJob):
             "averaged_jumps": variable("jump", ends + [math.nan] * more, "V", text),
             "averaged_kind": ("jump", kinds + [""] * more, {"long_name": "how it is lost there"}),
         }
-
-    def attributes(self, table: Table) -> dict[str, str | float]:
-        motor = float(table["motor"][-1])
-        return {
-            "title": f"Weak drive, {self.structure.kind} structure: each revolution of the motor",
-            "missing_over_motor_work": float(table["missing"][-1]) / motor,
-            "defects_over_motor_work": float(table["defect_sizes"][-1]) / motor,
-        }
-
-
-def bracket_variables(
-    jumps: Sequence[Jump | None], ramp_variables: Mapping[str, Variable], volts: float
-) -> dict[str, Variable]:
-    """Build the variables of the voltages at which motions are lost, and of the ramp's lag."""
-    lows = np.array([volts * jump.low if jump else math.nan for jump in jumps])
-    highs = np.array([volts * jump.high if jump else math.nan for jump in jumps])
-    lost = np.array([jump is not None and jump.outcome == LOST for jump in jumps])
-    places = np.where(lost, 0.5 * (lows + highs), math.nan)
-    late = ramp_variables["ramp_voltage"][1] - places
-    text = "voltage at which the motion is lost, whatever the ramp's rate"
-    return {
-        "jumps": variable("jump", places, "V", text),
-        "jump_low": variable("jump", lows, "V", "last held voltage at which the motion stays"),
-        "jump_high": variable("jump", highs, "V", "first at which it is lost, or may be"),
-        "jump_lag": variable("jump", late, "V", "how late the ramp shows the jump"),
-    }
 
 
 def require_motor(structure: Structure, drive: Drive) -> None:
@@ -407,7 +397,6 @@ def couple(
     settings = (duration, rate, settle, increment, back, spin_up)
     schedule = schedule_from_arguments(structure, drive, voltage, *settings)
     scheme = scheme_from_arguments(structure, step, tolerance, control is not None)
-    job = make_couple_job(
-        structure, drive, schedule, scheme, speed_start, control, hold, hysteresis
-    )
+    more = (speed_start, control, hold, hysteresis)
+    job = make_couple_job(structure, drive, schedule, scheme, *more)
     return compute_dataset(job, running, make_fmu_finder(running))

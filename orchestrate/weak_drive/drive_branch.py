@@ -8,8 +8,9 @@ the unit circle before (Neimark-Sacker).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -32,7 +33,7 @@ from ..running.options import Running
 from ..running.runner import compute_dataset
 from . import averaged, own_resonance
 from .couple import KINDS as STRUCTURES
-from .couple import MAX_STEPS, require_motor
+from .couple import require_motor
 from .drive_tracer import (
     ENDS,
     HALVED,
@@ -43,6 +44,7 @@ from .drive_tracer import (
     find_doubled_motion,
     find_motion_near,
 )
+from .master import MAX_STEPS
 from .shooting import Shooter
 
 LEGS = ("from below", "from above", "first doubled", "second doubled")
@@ -95,10 +97,6 @@ class DriveBranchJob(Job):
             k: np.array([[f(leg) for leg in legs] for legs in rows]) for k, f in columns.items()
         }
 
-    @property
-    def continuation_settings(self) -> ContinuationSettings:
-        return ContinuationSettings(self.longest, self.most - 1)
-
     def max_period_in_revolutions(self, structure: Structure) -> int:
         """Return the longest period that is traced, in revolutions."""
         return 1 if structure.bonded else self.period
@@ -113,14 +111,17 @@ class DriveBranchJob(Job):
     def trace_legs(self, shooter: Shooter) -> list[Leg]:
         low, high = (speed / shooter.structure.omega for speed in self.speeds)
         turns = self.max_period_in_revolutions(shooter.structure)
-        below = self.trace_leg(shooter, (low, high), up=True)
+        trace = partial(self.trace_leg, shooter, (low, high))
+        below = trace(partial(self.simulate_and_find_motion, shooter, low, up=True))
         passed = below.end == LIMIT and below.points[-1].coordinates[1] > 0.5 * (low + high)
-        above = Leg(end=NOT_BEGUN) if passed else self.trace_leg(shooter, (low, high), up=False)
+        above = Leg(end=NOT_BEGUN)
+        if not passed:
+            above = trace(partial(self.simulate_and_find_motion, shooter, high, up=False))
         legs = [below, above]
         for leg in (below, above):
             for flip in leg.bifurcations:
                 if len(legs) < len(LEGS) and self.needs_doubled_leg(flip, legs, turns):
-                    legs.append(self.trace_doubled_leg(shooter, flip.point, (low, high)))
+                    legs.append(trace(partial(find_doubled_motion, shooter, flip.point)))
         return [*legs, *(Leg(end=NOT_BEGUN) for _ in LEGS[len(legs) :])]
 
     def needs_doubled_leg(self, flip: Bifurcation[Motion], legs: Sequence[Leg], turns: int) -> bool:
@@ -130,32 +131,28 @@ class DriveBranchJob(Job):
         at = flip.point.coordinates
         return not any(np.abs(at - end).max() < 2.0 * self.longest for end in ends)
 
-    def trace_doubled_leg(self, shooter: Shooter, flip: Motion, speeds: tuple[float, float]) -> Leg:
+    def trace_leg(
+        self, shooter: Shooter, speeds: tuple[float, float], find_start: Callable[[], Motion]
+    ) -> Leg:
         try:
-            start = find_doubled_motion(shooter, flip)
-            return DriveTracer(shooter, start, speeds, self.continuation_settings).trace(start)
+            start, settings = find_start(), ContinuationSettings(self.longest, self.most - 1)
+            return DriveTracer(shooter, start, speeds, settings).trace(start)
         except SOLVER_ERRORS:
             return Leg(end=NO_START)
 
-    def trace_leg(self, shooter: Shooter, speeds: tuple[float, float], up: bool) -> Leg:
-        """Trace one leg from the lowest or the highest speed, begun by simulation."""
-        speed = speeds[0] if up else speeds[1]
+    def simulate_and_find_motion(self, shooter: Shooter, speed: float, up: bool) -> Motion:
+        """Find the motion at a speed, over omega, that is followed to higher or lower ones."""
         voltage = float(averaged.stationary_voltage(shooter.structure, self.drive, speed))
         omega = shooter.structure.omega
         state = shooter.simulate_at_speed(voltage * shooter.volts, speed * omega, self.settle)
-        guess = np.append(state, [voltage, speed])
         turns = self.max_period_in_revolutions(shooter.structure)
-        try:
-            shooter.set_revolutions(turns)
-            start = find_motion_near(shooter, guess, up)
-            for part in (part for part in range(1, turns) if turns % part == 0):
-                if np.abs(shooter.state_change_after(start.root.unknowns, part)).max() < 1e-6:
-                    shooter.set_revolutions(part)
-                    start = find_motion_near(shooter, start.root.unknowns, up)
-                    break
-        except SOLVER_ERRORS:
-            return Leg(end=NO_START)
-        return DriveTracer(shooter, start, speeds, self.continuation_settings).trace(start)
+        shooter.set_revolutions(turns)
+        motion = find_motion_near(shooter, np.append(state, [voltage, speed]), up)
+        for part in (part for part in range(1, turns) if turns % part == 0):
+            if np.abs(shooter.state_change_after(motion.root.unknowns, part)).max() < 1e-6:
+                shooter.set_revolutions(part)
+                return find_motion_near(shooter, motion.root.unknowns, up)
+        return motion
 
     def motion_table(self, motions: Sequence[Motion]) -> np.ndarray:
         table = np.full((self.most, len(COLUMNS) + MULTIPLIERS), np.nan, dtype=complex)
@@ -307,8 +304,8 @@ def drive_branch(
         speed * omega for speed in own_resonance.lower_and_higher_resonance(structure, drive)
     )
     expected = "(first, last) in rad/s, with 0 < first < last"
-    usual = 0.95 * low, 1.25 * high
-    first, last = checked_pair("speed", usual if speed is None else speed, expected)
+    pair = (0.95 * low, 1.25 * high) if speed is None else speed
+    first, last = checked_pair("speed", pair, expected)
     if not 0.0 < first < last:
         raise InputError(f"speed = {speed} rad/s: expected {expected}")
     checked_range("longest", longest, "", low=1e-4, high=1.0)

@@ -29,8 +29,9 @@ from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import compute_dataset
 from . import averaged, own_resonance
-from .couple import KINDS, MAX_STEPS, make_couple_job, require_motor, scheme_from_arguments
-from .run import MotorRun, open_motor_run
+from .couple import KINDS, make_couple_job, require_motor, scheme_from_arguments
+from .master import MAX_STEPS
+from .run import open_motor_run
 from .schedule import Ramp
 
 
@@ -59,12 +60,11 @@ class DriveSpectraJob(Job):
         return np.asarray(orders[orders <= self.highest])
 
     def work(self, fmus: Fmus, items: Sequence[Structure], previous: Table | None) -> Table:
-        records = [self.record_displacements_and_speed(fmus, structure) for structure in items]
-        lines = len(self.orders())
         spectra, speeds = [], []
-        for displacement, speed in records:
+        for structure in items:
+            displacement, speed = self.record_displacements_and_speed(fmus, structure)
             frequency, amplitude = amplitude_spectrum(displacement, TURN / speed / self.points)
-            spectra.append((frequency**2 * amplitude)[:, :lines])
+            spectra.append((frequency**2 * amplitude)[:, : len(self.orders())])
             speeds.append(speed)
         return {"acceleration": np.array(spectra), "speed": np.array(speeds)}
 
@@ -82,16 +82,13 @@ class DriveSpectraJob(Job):
                     f"the motor completed no two revolutions at {self.approach.last:g} V: "
                     "raise the voltage or the duration"
                 )
-            speed = TURN * (len(ends) - 1) / (ends[-1] - ends[0])
-            return self.run_and_sample_displacements(run, TURN / speed / self.points), float(speed)
-
-    def run_and_sample_displacements(self, run: MotorRun, interval: float) -> np.ndarray:
-        """Run on at equal steps; return both masses' absolute displacements, m, (2, samples)."""
-        count = self.revolutions * self.points
-        record = run.master.run([self.approach.last] * count, h=interval)
+            speed = float(TURN * (len(ends) - 1) / (ends[-1] - ends[0]))
+            # on at equal steps
+            voltages = [self.approach.last] * (self.revolutions * self.points)
+            record = run.master.run(voltages, h=TURN / speed / self.points)
         x1, x2, box = (record[name][record.ends] for name in ("x1", "x2", "box_position"))
-        rest_1, rest_2 = run.job.structure.at_rest
-        return np.array([x1 - rest_1 + box, x2 - rest_2 + box])
+        rest_1, rest_2 = structure.at_rest
+        return np.array([x1 - rest_1 + box, x2 - rest_2 + box]), speed
 
     def is_captured(self, fmus: Fmus) -> bool:
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()

@@ -35,14 +35,12 @@ IMPACT, FLIGHT = KINDS[Kind.GRAZING], KINDS[Kind.TOUCHING]
 BACK = 3  # motions over which the slope of a margin is taken
 
 
-class GrazingMargins(NamedTuple):
-    """Store how far a motion's gaps and impacts are from grazing, non-dimensional."""
-
-    flight: float  # smallest gap at which the masses turn away from each other without an impact
-    impact: float  # smallest closing speed of an impact, over omega
-
-
-def measure_grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) -> GrazingMargins:
+def measure_grazing_margins(
+    shooter: Shooter, unknowns: Floats, angle: float
+) -> tuple[float, float]:
+    """Return how far a motion is from grazing: by a flight, and by an impact, non-dimensional."""
+    # the smallest gap at which the masses turn away from each other without an impact,
+    # and the smallest closing speed of an impact, over omega
     shooter.angle = angle
     master, voltage = shooter.begin_period(unknowns)
     gaps, closing = [math.inf], [math.inf]
@@ -55,7 +53,7 @@ def measure_grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) ->
             ends = before, master.motion
             gaps.append(smallest_gap_in_step(shooter.structure, *ends, master.scheme.h))
     length = float(shooter.units[0])
-    return GrazingMargins(min(gaps) / length, min(closing) / length / shooter.structure.omega)
+    return min(gaps) / length, min(closing) / length / shooter.structure.omega
 
 
 def smallest_gap_in_step(

@@ -49,8 +49,9 @@ class EnergyBalance:
 
     def add_record(self, record: Record) -> Energies:
         """Return the energies since the start at all rows of a record, and add them up."""
-        steps = np.stack([self.energy_lost_per_step(record), coupling_defects(record)])
-        steps = np.vstack([steps, np.abs(steps[1])])
+        # the work that the box takes, by the drive's account, less what the masses give
+        defects = np.diff(record["box_force_work"]) - record.after["given"]
+        steps = np.stack([self.energy_lost_per_step(record), defects, np.abs(defects)])
         sums = np.cumsum(np.hstack([self.sums[:, np.newaxis], steps]), axis=1)
         motion, velocity, s = record.motion(), record["box_velocity"], self.structure
         momentum = s.m1 * motion.v1 + s.m2 * motion.v2 + 0.5 * (s.m1 + s.m2) * velocity
@@ -92,9 +93,3 @@ class EnergyBalance:
 
     def resume_from(self, numbers: list[float]) -> None:
         self.sums, self.start = np.array(numbers[:3]), np.array(numbers[3:])
-
-
-def coupling_defects(record: Record) -> Floats:
-    """Return the work that the box takes, by the drive's account, less what the masses give."""
-    taken: Floats = np.diff(record["box_force_work"])
-    return taken - record.after["given"]

@@ -42,7 +42,6 @@ from .schedule import Ramp
 
 IGNORED = ("clearance", "e", "e_slope", "gamma")  # by the bonded structure
 COLUMNS = ("jumps", "jump_low", "jump_high")
-SHOWN = ("voltage", "speed")
 
 
 @dataclass(frozen=True)
@@ -77,10 +76,9 @@ class JumpVoltagesJob(Job):
             for schedule in self.schedules[1:]:
                 job = make_couple_job(structure, self.drive, schedule, self.scheme, hold=0.0)
                 runs.append((job, job.run_all_chunks(fmus)))
-            jumps = [each[0] if each else None for each in slowest.jumps_by_direction(table)]
-            numbered = list(enumerate(jumps))
+            jumps = list(zip((True, False), slowest.jumps_by_direction(table), strict=True))
             shown.append(
-                [[ramp_jump_voltage_and_speed(*run, *one) for one in numbered] for run in runs]
+                [[ramp_jump_voltage_and_speed(*run, *each) for each in jumps] for run in runs]
             )
         return {"jumps": np.array(rows), "decided": np.array(decided), "shown": np.array(shown)}
 
@@ -120,14 +118,14 @@ class JumpVoltagesJob(Job):
 
 
 def ramp_jump_voltage_and_speed(
-    job: CoupleJob, table: Table, down: int, jump: Jump | None
+    job: CoupleJob, table: Table, up: bool, jumps: Sequence[Jump]
 ) -> list[float]:
-    """Return voltage and speed before at which a ramp shows a jump, with NaN where it does not."""
-    if jump is None:
-        return [math.nan] * len(SHOWN)
-    before, half, _ = RampRecord(job, table, not down).row_positions_of_jump(*jump[1:])
+    """Return the voltage at which a ramp shows the first jump and the speed before, or NaN."""
+    if not jumps:
+        return [math.nan, math.nan]
+    before, half, _ = RampRecord(job, table, up).row_positions_of_jump(*jumps[0][1:])
     rows = np.arange(len(table["time"]))
-    at = zip((half, before), SHOWN, strict=True)
+    at = ((half, "voltage"), (before, "speed"))
     return [float(np.interp(row, rows, table[name])) for row, name in at]
 
 

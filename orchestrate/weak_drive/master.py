@@ -37,6 +37,8 @@ MEMORY = {"inverse_mass": 2, "held": 1, "owed": 2}  # of the force, between step
 PUSH_MEMORY = {"push_count": 1, "push_points": (PAST - 1) * (1 + len(PUSHES))}
 MEMORY |= PUSH_MEMORY  # of the drive's forces on the halves
 NOT_WHOLE = -2  # a status that FMI does not have
+MAX_STEPS = 1e9  # of a run: more is a typing error, it would run for weeks
+MAX_STEPS_KEPT = 10_000_000  # of a run of which every step is kept in memory
 
 
 @dataclass(frozen=True)

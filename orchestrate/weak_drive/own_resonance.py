@@ -69,17 +69,12 @@ def gap_keeps_sign(w: np.ndarray, n: np.ndarray, Omega: float) -> bool:
     return bool((gaps > 0.0).all() or (gaps < 0.0).all())
 
 
-def resonance_speed(structure: Structure, drive: Drive) -> float:
-    """Return the resonance speed of the structure as given, over omega."""
-    # the bonded one's, unless its own is away by more than half the distance of the bonded folds
-    # and half the width of its resonance
-    return averaged.bonded_resonance(structure, drive) + resolved_resonance_shift(structure, drive)
-
-
 def lower_and_higher_resonance(structure: Structure, drive: Drive) -> tuple[float, float]:
     """Return the lower and the higher of the bonded and delaminated resonance speeds."""
-    both = (structure.as_bonded(), structure.as_delaminated())
-    low, high = sorted(resonance_speed(kind, drive) for kind in both)
+    low, high = sorted(
+        averaged.bonded_resonance(kind, drive) + resolved_resonance_shift(kind, drive)
+        for kind in (structure.as_bonded(), structure.as_delaminated())
+    )
     return low, high
 
 

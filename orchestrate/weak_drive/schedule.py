@@ -95,14 +95,9 @@ class Ramp(Schedule):
         return self.spin_up + self.settle
 
     @property
-    def rise_time(self) -> float:
-        """Return the time from one end of the ramp to the other, s."""
-        return abs(self.last - self.first) / self.rate
-
-    @property
     def turn_time(self) -> float:
         """Return the time at which the ramp reaches the last voltage, s."""
-        return self.ramp_start + self.rise_time
+        return self.ramp_start + abs(self.last - self.first) / self.rate
 
     @cached_property
     def course(self) -> Course:

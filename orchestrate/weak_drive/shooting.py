@@ -78,16 +78,11 @@ class Shooter:
         steps: int,
         length: float,
     ) -> None:
-        self.fmus, self.structure = fmus, structure
-        self.halves = oscillator_start_values(structure)
-        self.set_drive(drive)
+        self.fmus, self.structure, self.drive = fmus, structure, drive
         self.revolutions, self.period_steps, self.angle = revolutions, revolutions * steps, 0.0
         self.master: Master | None = None  # of both FMUs, from the first start on
         self.volts, self.length = drive.volts(structure), length
         self.define_unknowns(structure.bonded)
-
-    def set_drive(self, drive: Drive) -> None:
-        self.drive, self.parameters = drive, drive.parameters()
 
     def define_unknowns(self, in_contact: bool) -> None:
         """Set whether periods begin in contact, and so the unknowns; forget the Jacobian."""
@@ -133,10 +128,11 @@ class Shooter:
         values = (state * self.units).tolist()
         count = 2 if self.in_contact else 4  # of the values that are the masses'
         masses = values[:count] * (4 // count)
-        more = {"angle_start": self.angle, "voltage": voltage}
-        oscillator.initialize(**self.halves, **dict(zip(MASSES, masses, strict=True)))
-        own = dict(zip(STARTS, values[count:], strict=False))
-        shaker.initialize(**self.parameters, **own, **more)
+        starts = dict(zip(MASSES, masses, strict=True))
+        oscillator.initialize(**oscillator_start_values(self.structure), **starts)
+        starts = dict(zip(STARTS, values[count:], strict=False))
+        starts |= {"angle_start": self.angle, "voltage": voltage}
+        shaker.initialize(**self.drive.parameters(), **starts)
         if self.master is None:
             self.master = Master(oscillator, shaker, Scheme(h))
         else:
@@ -169,7 +165,7 @@ class Shooter:
         longest = time + (self.revolutions + 1) * TURN / speed
         own_drive = self.drive
         # a rotor that keeps its speed
-        self.set_drive(own_drive.replace(rotor_inertia=1e6 * own_drive.rotor_inertia))
+        self.drive = own_drive.replace(rotor_inertia=1e6 * own_drive.rotor_inertia)
         state = np.zeros(self.size)
         state[self.names.index("speed")] = speed / self.structure.omega
         if "motor_current" in self.names:
@@ -185,7 +181,7 @@ class Shooter:
                 record = master.run(np.full(self.period_steps, voltage), h=h).after
                 master.run(np.full(1 + self.find_best_start(record)[0], voltage), h=h)
         finally:
-            self.set_drive(own_drive)
+            self.drive = own_drive
         self.angle = master["angle"] % TURN
         self.define_unknowns(self._is_touching(master) or self.structure.bonded)
         return self.scaled_state(master)

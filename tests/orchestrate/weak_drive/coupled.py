@@ -64,16 +64,22 @@ def starts_of(system, state):
 
 
 @contextlib.contextmanager
-def master(system, scheme, state, form="fmi3", kind=Master):
-    """A master from a state as :mod:`.monolithic` has it."""
+def instances(form="fmi3"):
+    """An instance of the oscillator and one of the motor."""
     oscillator, shaker = (find_or_export(model, form).path for model in (OSCILLATOR, MOTOR_SHAKER))
-    starts, shaker_starts = starts_of(system, state)
     with Instance(oscillator) as one, Instance(shaker) as other:
+        yield one, other
+
+
+@contextlib.contextmanager
+def master(system, scheme, state, form="fmi3"):
+    """A master from a state as :mod:`.monolithic` has it."""
+    starts, shaker_starts = starts_of(system, state)
+    with instances(form) as (one, other):
         one.initialize(**oscillator_start_values(system.structure), **starts)
         other.initialize(**system.drive.parameters(), **shaker_starts)
-        made = kind(one, other, scheme)
-        yield made
-        made.close()
+        with contextlib.closing(Master(one, other, scheme)) as made:
+            yield made
 
 
 def state_of(m):

@@ -10,11 +10,22 @@ from orchestrate.constants import TURN
 from orchestrate.weak_drive.averaged import folds
 from orchestrate.weak_drive.connection import MOTOR
 from orchestrate.weak_drive.couple import schedule_from_arguments, scheme_from_arguments
+from orchestrate.weak_drive.hysteresis import HysteresisSettings
 from orchestrate.weak_drive.jump_voltages import JumpVoltagesJob
 from orchestrate.weak_drive.revolutions import Revolutions
 from orchestrate.weak_drive.step_record import LEADING, Record
 
-from .coupled import BEAM, QUICK
+from .coupled import BEAM, QUICK, system_of
+
+CLOSE = system_of(  # its folds, by its branch, at 1.13468 and 1.13041
+    *(1.819477, 1.111004, 0.01933431, 0.04249591, 0.8220531),
+    **{"beta": 0.1295615, "epsilon": 0.001822262, "b": 0.02891932},
+    **{"Omega_b": 0.268049, "D_b": 0.005833275},
+).as_bonded()
+TAIL = system_of(  # two motions last at 1.638, of which the first is lost at 1.6415
+    *(2.55983, 2.06781, 0.01518, 0.01881, 0.86764, 1.44925),
+    **{"beta": 0.20942, "epsilon": 0.00099, "b": 0.01417, "Omega_b": 0.28779, "D_b": 0.04029},
+)
 
 
 def run(system, voltage, rate=None, **more):
@@ -101,7 +112,9 @@ def test_revolutions_are_the_turns_that_are_new():
     table[[names.index(name) for name in columns]] = np.array(list(columns.values()))
     revolutions, found = Revolutions(QUICK.structure), []
     for ends in np.split(np.arange(count), [7, 100, 101]):
-        found += revolutions.complete_revolutions(Record(names, table, ends, np.empty((0, 0)))).tolist()
+        found += revolutions.complete_revolutions(
+            Record(names, table, ends, np.empty((0, 0)))
+        ).tolist()
     expected = completed(*columns.values())
     assert len(found) > 100 and len({row[2] > 0.0 for row in found}) == 2
     assert [tuple(row) for row in found] == expected
@@ -137,3 +150,68 @@ def test_over_a_parameter_the_bonded_structure_is_computed_once():
     assert data.jumps.sel(jump="up").values.tolist() == [[0.0, 0.0], [1.0, 2.0]]
     at = {"rate": 1, "jump": 0}
     assert data.voltage.isel(at).values.tolist() == [[4.0, 4.0], [12.0, 20.0]]
+
+
+def bracket(found, system):
+    """The bracket of each jump, over K omega, ascending."""
+    volts = system.drive.volts(system.structure)
+    return np.sort([found.jump_low.values / volts, found.jump_high.values / volts], axis=0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("system", "ends", "rate", "place", "width"),
+    [
+        (
+            CLOSE,
+            (1.2, 1.08),
+            2e-4,
+            1.13041,
+            2.1e-4,
+        ),  # a record does not tell it from a steep branch
+        (BEAM.as_bonded(), (1.40, 1.33), 1e-4, 1.37313, 4e-3),  # the Neimark-Sacker points:
+        (BEAM, (1.40, 1.33), 1e-4, 1.37007, 4e-3),  # growth is seen in time from 1e-3 past them on
+    ],
+)
+def test_a_jump_down_where_the_branch_loses_stability(system, ends, rate, place, width):
+    found = run(system, ends, rate, back=False, step=None).sel(jump="down")
+    low, high = bracket(found, system)
+    assert found.no_jump == "" and found.decided == "by held voltages"
+    assert low - 5e-5 < place < high + 5e-5 and high - low < width
+
+
+def test_what_has_not_settled_is_undecided():
+    """And the answer says what helps."""
+    more = {"settle": 100.0, "hold": 300.0 / CLOSE.structure.omega, "back": False, "step": None}
+    found = run(CLOSE, (1.2, 1.08), 2e-4, **more).sel(jump="down")
+    assert found.decided == "undecided" and np.isnan(found.jumps)
+    assert "longer hold" in str(found.no_jump.item())
+
+
+def test_a_ramp_that_ends_before_the_jump_shows():
+    """Past the fold at 1.5831; the bracket is as wide as the settings say."""
+    quick, settings = QUICK.as_bonded(), HysteresisSettings(width=2e-3)
+    found = run(quick, (1.5, 1.59), 1e-4, back=False, step=None, hysteresis=settings)
+    low, high = bracket(found.sel(jump="up"), quick)
+    assert found.decided[0] == "by held voltages" and np.isnan(found.ramp_voltage[0])
+    assert low < 1.5831 < high and 1e-3 < high - low < 4.1e-3
+
+
+@pytest.mark.slow
+def test_a_second_jump_in_the_tail_of_a_larger_one():
+    """The record of the ramp shows one fall of the slip."""
+    found = run(TAIL, (1.535, 1.665), 2.5e-5, back=False, step=None).sel(jump=["up", "up 2"])
+    volts = TAIL.drive.volts(TAIL.structure)
+    assert found.jumps.values / volts == pytest.approx([1.5436, 1.6415], abs=2e-4)
+
+
+@pytest.mark.slow
+def test_a_motor_that_turns_backward_has_the_mirrored_jump():
+    quick = QUICK.as_bonded()
+    found = run(quick, (-1.5, -1.65), 2e-4, back=False, step=None)
+    volts = quick.drive.volts(quick.structure)
+    assert float(found.jumps[0]) / volts == pytest.approx(-1.5831, abs=2e-4)
+    assert float(found.averaged_jumps[0]) / volts == pytest.approx(-1.58306, abs=1e-5)
+    assert float(found.ramp_voltage[0]) < float(found.jumps[0])
+    assert found.jump_speed_before[0] < -1.3 and found.motor[-1] > 0.0
+    assert found.sizes["revolution"] > 100

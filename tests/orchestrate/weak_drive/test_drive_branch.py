@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 
 from orchestrate import couple, drive_branch
-from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find_or_export
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.drive_branch import DriveBranchJob
 from orchestrate.weak_drive.drive_tracer import find_motion_near
 from orchestrate.weak_drive.shooting import Shooter
 
-from .coupled import BEAM, QUICK
+from .coupled import BEAM, QUICK, instances
 from .monolithic import Monolith
 
 APART = QUICK.with_structure(clearance=100.0)  # never touch
@@ -26,25 +25,20 @@ def branch_of(system, most, range_):
     speeds = tuple(share * resonance * omega for share in range_)
     asked = {"longest": 0.1, "most": most, "period": 2, "steps": 48, "settle": 600.0 / omega}
     job = DriveBranchJob("branch", *system, speeds, **asked)
-    with (
-        Instance(find_or_export(OSCILLATOR).path) as one,
-        Instance(find_or_export(MOTOR_SHAKER).path) as other,
-    ):
-        shooter = job.make_shooter((one, other), system.structure)
+    with instances() as fmus:
+        shooter = job.make_shooter(fmus, system.structure)
         return job.trace_legs(shooter), shooter.length
 
 
 def motion_of(system, speed, revolutions=1):
     """The motion of a speed, and its state of the whole system as :mod:`.monolithic` has it."""
-    with (
-        Instance(find_or_export(OSCILLATOR).path) as one,
-        Instance(find_or_export(MOTOR_SHAKER).path) as other,
-    ):
-        shooter = Shooter((one, other), *system, revolutions=revolutions, steps=48, length=20.0)
+    settings = {"revolutions": revolutions, "steps": 48, "length": 20.0}
+    with instances() as fmus:
+        shooter = Shooter(fmus, *system, **settings)
         volts = float(averaged.stationary_voltage(*system, speed))
         state = shooter.simulate_at_speed(volts, speed, 600.0)
         motion = find_motion_near(shooter, np.append(state, [volts, speed]), up=True)
-        fresh = Shooter((one, other), *system, revolutions=revolutions, steps=48, length=20.0)
+        fresh = Shooter(fmus, *system, **settings)
         fresh.angle = shooter.angle
         shots = [each.shoot(motion.root.unknowns).end for each in (shooter, fresh)]
     assert np.array_equal(*shots)  # the master of many shots remembers none of them

@@ -1,9 +1,10 @@
 """Figure 3 through the coupled system: at the resonance, its lines, and no folding back."""
 
+from contextlib import closing
+
 import numpy as np
 import pytest
 
-from orchestrate.fmu import MOTOR_SHAKER, OSCILLATOR, Instance, find_or_export
 from orchestrate.response.spectra import amplitude_spectrum
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import make_couple_job
@@ -12,7 +13,7 @@ from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.run import MotorRun
 from orchestrate.weak_drive.schedule import Ramp
 
-from .coupled import QUICK, state_of
+from .coupled import QUICK, instances, state_of
 from .monolithic import Monolith
 
 RATE, HOLD = 4e-4, 400.0
@@ -23,14 +24,9 @@ def whole_lines(speed):
     voltage, revolutions, points = voltage_between_jumps(*QUICK), 8, 2048
     ramp = Ramp(0.85 * voltage, voltage, RATE, settle=300.0, back=False)
     job = make_couple_job(*QUICK, ramp, Scheme(0.1))
-    with (
-        Instance(find_or_export(OSCILLATOR).path) as oscillator,
-        Instance(find_or_export(MOTOR_SHAKER).path) as shaker,
-    ):
-        run = MotorRun(job, oscillator, shaker)
+    with instances() as fmus, closing(MotorRun(job, *fmus)) as run:
         run.run_steps_by_revolution(range(round((ramp.duration + HOLD) / 0.1)))
         state = state_of(run.master)
-        run.close()
     interval = 2.0 * np.pi / speed / points
     times = interval * np.arange(revolutions * points)
     states, impacts = Monolith(*QUICK, voltage).solve(state, times)

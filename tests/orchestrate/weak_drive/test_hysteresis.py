@@ -1,4 +1,4 @@
-"""The hysteresis loop: a loss of stability, a steep branch, or undecided; at known folds."""
+"""The hysteresis loop on made-up motors: a loss of stability, a steep branch, or undecided."""
 
 from types import SimpleNamespace
 
@@ -7,11 +7,9 @@ import pytest
 
 from orchestrate.weak_drive import hysteresis
 from orchestrate.weak_drive.hysteresis import LOST, NONE, UNDECIDED, HeldPoint, HysteresisLoop, Jump
-from orchestrate.weak_drive.ramp_record import RampRecord, jump_labels
 from orchestrate.weak_drive.schedule import Ramp
 
-from .coupled import BEAM, QUICK, system_of
-from .test_couple import run
+from .coupled import QUICK
 
 H = 5.0
 STIFF = 20.0
@@ -21,8 +19,7 @@ class Rotor:
     """A speed that follows eta0 = 1.5 + slope x + stiff x^3, x = speed - 1.3."""
 
     def __init__(self, schedule, slope, start, stiff=STIFF):
-        self.schedule, self.slope, self.speed = schedule, slope, start
-        self.stiff = stiff
+        self.schedule, self.slope, self.speed, self.stiff = schedule, slope, start, stiff
 
     def run_steps_for_speeds(self, steps):
         speeds = []
@@ -37,10 +34,10 @@ class Rotor:
         pass
 
     def get_state(self):
-        return {"speed": np.array([self.speed])}
+        return self.speed
 
-    def set_state(self, table):
-        self.speed = float(table["speed"][0])
+    def set_state(self, speed):
+        self.speed = speed
 
 
 def decided(slope, up=True, start=1.1, longest=2e4):
@@ -57,21 +54,20 @@ def fold_of(slope, up=True):
     return 1.5 - (1 if up else -1) * 2.0 / 3.0 * slope * x
 
 
-def assert_at(jump, fold):
-    """The bracket of a jump contains a fold, and is short."""
-    low, high = sorted((jump.low, jump.high))
-    assert jump.outcome == LOST
-    assert low - 5e-6 <= fold <= high + 5e-6 and high - low < 2.1e-4
-
-
 class Scripted(HysteresisLoop):
-    """A motion half as steep as the voltage, and others: by how much their speed is higher."""
+    """A motion half as steep as the voltage, and others: by how much their speed is higher, from
+    which voltage on the last of them is come to, and down to which it lasts; or a function.
+    """
 
     own_error = 0.0
 
     def __init__(self, higher):
         super().__init__(lambda _: None, Ramp(1.4, 1.6, 1e-3), H, 1.0, 1.0, 10.0)
         self.higher = higher
+        if isinstance(higher, list):
+            self.higher = lambda motion, _, voltage: next(
+                (own for own, up, down in higher if voltage > (down if own == motion else up)), 0.0
+            )
 
     def move_and_hold(self, state, first, voltage, min_time=0.0):
         motion = self.higher(state["motion"], first, voltage)
@@ -85,22 +81,22 @@ class Scripted(HysteresisLoop):
     def course(self):
         return self.find_jumps(self.at(1.5), 1.56)
 
+    def outcomes(self):
+        return [jump.outcome for jump in self.course()]
+
 
 @pytest.mark.parametrize(("length", "bracket"), [(1.02e-4, 0.51e-4), (0.98e-4, 0.98e-4)])
 def test_a_jump_is_bracketed_within_the_width(length, bracket):
-    def higher(motion, before, voltage):
-        return 0.1 if voltage > 1.506 or (motion and voltage > 1.5) else 0.0
-
-    loop = Scripted(higher)
+    loop = Scripted([(0.1, 1.506, 1.5)])
     (jump,) = loop.find_jumps(loop.at(1.5), 1.5 + 128 * length)
     assert jump.outcome == LOST and jump.low < 1.506 <= jump.high
     assert jump.high - jump.low == pytest.approx(bracket)
 
 
-@pytest.mark.parametrize(("spent", "outcomes"), [(599.0, [LOST]), (601.0, [UNDECIDED])])
-def test_what_is_left_after_sixty_holds_is_undecided(monkeypatch, spent, outcomes):
+@pytest.mark.parametrize(("spent", "outcome", "end"), [(599, LOST, 1.55), (601, UNDECIDED, 1.56)])
+def test_what_is_left_after_sixty_holds_is_undecided(monkeypatch, spent, outcome, end):
     """They take 10 s; the motion is lost at 1.55."""
-    loop = Scripted(lambda motion, before, voltage: 0.1 * (voltage > 1.55 or bool(motion)))
+    loop = Scripted([(0.1, 1.55, 0.0)])
     insert = loop.insert_point_between
 
     def late(points, i):
@@ -108,9 +104,8 @@ def test_what_is_left_after_sixty_holds_is_undecided(monkeypatch, spent, outcome
         return insert(points, i)
 
     monkeypatch.setattr(loop, "insert_point_between", late)
-    (jump,) = jumps = loop.course()
-    assert [jump.outcome for jump in jumps] == outcomes
-    assert jump.high == (1.56 if outcomes == [UNDECIDED] else pytest.approx(1.55, abs=1e-4))
+    (jump,) = loop.course()
+    assert (jump.outcome, jump.high) == (outcome, pytest.approx(end, abs=1e-4))
 
 
 @pytest.mark.parametrize(("last", "count"), [(1.56, 3), (1.5601, 4), (1.44, 3), (1.5, 1)])
@@ -122,14 +117,8 @@ def test_first_steps_are_those_of_the_grid(last, count):
 
 def test_what_comes_after_a_speed_against_the_voltage():
     """The motion ends at 1.52 for one 0.02 below; unless it had converged, by chance."""
-
-    def higher(motion, before, voltage):
-        if voltage > 1.54 or (motion == 0.1 and voltage > 1.5):
-            return 0.1
-        return -0.02 if voltage > 1.52 or (motion and voltage > 1.51) else 0.0
-
-    assert [jump.outcome for jump in Scripted(higher).course()] == [LOST, LOST]
-    loop = Scripted(higher)
+    loop = Scripted([(0.1, 1.54, 1.5), (-0.02, 1.52, 1.51)])
+    assert loop.outcomes() == [LOST, LOST]
     loop.own_error = 1e-5
     lost, rest = loop.course()
     assert lost.outcome == LOST and lost.low - 1e-9 <= 1.52 < lost.low + 1e-4
@@ -146,10 +135,8 @@ def test_what_a_motion_has_become_is_compared_from_the_step_before_on(sign):
         asked.append(i)
         return Jump((LOST, UNDECIDED)[i % 2], points[i].voltage, points[i + 1].voltage)
 
-    loop.hold_until_lasting, loop.update_step_and_find_jump = (
-        lambda point, *_: point._replace(lasts=next(lasts)),
-        jump_over,
-    )
+    loop.update_step_and_find_jump = jump_over
+    loop.hold_until_lasting = lambda point, *_: point._replace(lasts=next(lasts))
     loop.hold_grid, loop.insert_point_between = lambda *ends: points, lambda *step: False
     loop.excess_change = loop.required_lifetime = lambda *step: 1.0
     found = loop.find_jumps(points[0], points[-1].voltage)
@@ -203,25 +190,17 @@ def test_a_transient_is_held_for_five_times_its_first_hold_more(life, place):
     assert jump.outcome == LOST and jump.low - 1e-9 <= place <= jump.high + 1e-9
     brief, *lives = (loop.at(1.52)._replace(time=time) for time in (0.0, 19.9, 20.1))
     for lived, least in zip(lives, (99.5, 100.0), strict=True):  # ten holds at most
-        assert (
-            loop.required_lifetime(brief, lived)
-            == loop.required_lifetime(lived, brief)
-            == pytest.approx(least)
-        )
+        for pair in ((brief, lived), (lived, brief)):
+            assert loop.required_lifetime(*pair) == pytest.approx(least)
 
 
 @pytest.mark.parametrize("change", [0.02, -0.02])
 def test_a_step_without_hysteresis_is_no_jump(change):
     """As where halves begin to touch, at 1.52: with the voltage or against it; 1.54 is a jump."""
-
-    def higher(motion, before, voltage):
-        if voltage > 1.54 or (motion == 0.1 and voltage > 1.53):
-            return 0.1
-        return change if voltage > 1.52 else 0.0
-
-    (jump,) = Scripted(higher).course()
+    step = (change, 1.52, 1.52)
+    (jump,) = Scripted([(0.1, 1.54, 1.53), step]).course()
     assert jump.outcome == LOST and jump.low - 1e-9 <= 1.54 <= jump.high + 1e-9
-    assert Scripted(lambda *now: change if now[2] > 1.52 else 0.0).course() == []
+    assert Scripted([step]).course() == []
 
 
 @pytest.mark.parametrize(("change", "outcomes"), [(1.9e-3, []), (2.1e-3, [UNDECIDED])])
@@ -241,8 +220,7 @@ def test_what_comes_after_a_small_loss_is_undecided_by_chance(sign, change, outc
 
 def test_another_motion_on_the_way_back_is_undecided():
     """No step of the way there is large."""
-    loop = Scripted(lambda motion, before, voltage: 0.02 * (voltage < before))
-    assert [jump.outcome for jump in loop.course()] == [UNDECIDED]
+    assert Scripted(lambda _, before, now: 0.02 * (now < before)).outcomes() == [UNDECIDED]
 
 
 @pytest.mark.parametrize(
@@ -251,42 +229,31 @@ def test_another_motion_on_the_way_back_is_undecided():
 )
 def test_motions_of_nearly_one_speed_are_undecided(change, outcomes):
     """Between `small`, of what is none, and `clear`, of what is a jump."""
-
-    def higher(motion, before, voltage):
-        return change if voltage > 1.52 or (motion and voltage > 1.51) else 0.0
-
-    assert [jump.outcome for jump in Scripted(higher).course()] == outcomes
+    assert Scripted([(change, 1.52, 1.51)]).outcomes() == outcomes
 
 
-@pytest.mark.parametrize(("disturbance", "lasts"), [(1e-15, False), (1e-16, True)])
-def test_growth_is_seen_from_rounding_errors_on(disturbance, lasts):
-    """After `growths` growth times, that are e^30 = 1e13."""
-
+@pytest.mark.parametrize(
+    ("rate", "max_hold", "disturbance", "is_known", "lasts"),
+    [
+        (1.0, 100.0, 1e-15, True, False),  # grows by e^30 = 1e13 in `growths` growth times
+        (1.0, 100.0, 1e-16, True, True),
+        (3.1e-4, 1e4, 0.0, True, True),  # they take ten holds at most
+        (2.9e-4, 1e4, 0.0, False, False),
+    ],
+)
+def test_growth_is_seen_from_rounding_errors_on(rate, max_hold, disturbance, is_known, lasts):
     class Growing(Scripted):
         def move_and_hold(self, state, first, voltage, min_time=0.0):
-            motion = disturbance * np.exp(self.growth_rate(None) * min_time)
+            motion = disturbance * np.exp(rate * min_time)
             return self.at(voltage, motion)._replace(time=min_time)
-
-        def growth_rate(self, point):
-            return 1.0
-
-    loop = Growing(None)
-    loop.max_hold = 100.0
-    assert bool(loop.hold_until_lasting(loop.at(1.52), loop.at(1.53), 0.0).lasts) == lasts
-
-
-@pytest.mark.parametrize(("rate", "held"), [(3.1e-4, True), (2.9e-4, False)])
-def test_growth_that_takes_more_than_ten_holds_is_left_out(rate, held):
-    class Slow(Scripted):
-        def move_and_hold(self, state, first, voltage, min_time=0.0):
-            return self.at(voltage)
 
         def growth_rate(self, point):
             return rate
 
-    loop = Slow(None)
-    loop.max_hold = 1e4
-    assert np.isfinite(loop.hold_until_lasting(loop.at(1.52), loop.at(1.53), 0.0).speed) == held
+    loop = Growing(None)
+    loop.max_hold = max_hold
+    held = loop.hold_until_lasting(loop.at(1.52), loop.at(1.53), 0.0)
+    assert (np.isfinite(held.speed), bool(held.lasts)) == (is_known, lasts)
 
 
 def line(*points):
@@ -362,10 +329,8 @@ def test_the_motion_on_the_way_back_has_to_last(life, outcome):
 def test_a_step_is_no_jump_before_its_motions_have_lasted(least, excess):
     loop = Scripted(lambda *now: 0.0)
     loop.required_lifetime, loop.excess_change = lambda *ends: least, lambda *step: excess
-    assert (
-        loop.update_step_and_find_jump([loop.at(1.5)._replace(lasts=2.0), loop.at(1.51)], 0, [])
-        is None
-    )
+    ends = [loop.at(1.5)._replace(lasts=2.0), loop.at(1.51)]
+    assert loop.update_step_and_find_jump(ends, 0, []) is None
 
 
 @pytest.mark.parametrize(("asked", "base", "rotor"), [({}, 4000, 200), ({"base_hold": 1}, 1, 200)])
@@ -378,13 +343,9 @@ def test_the_usual_hold_is_longer_for_a_slower_rotor(asked, base, rotor):
 
 def test_a_hold_comes_at_the_rate():
     courses = []
-
-    def begin(course):
-        courses.append(course)
-        return Rotor(course, 0.0, 1.3, 0.0)
-
+    begin = lambda course: courses.append(course) or Rotor(course, 0.0, 1.3, 0.0)  # noqa: E731
     loop = HysteresisLoop(begin, Ramp(1.4, 1.6, 1e-4), H, 1.0, 1.0, 2e4)
-    loop.hold_from(HeldPoint(1.5, 1.3, 0.0, {"speed": np.array([1.3])}), 1.5098)
+    loop.hold_from(HeldPoint(1.5, 1.3, 0.0, 1.3), 1.5098)
     assert courses[-1].times == pytest.approx((0.0, 200.0, 20200.0))
 
 
@@ -409,9 +370,8 @@ def test_a_motion_is_held_for_a_time_unless_it_is_left(monkeypatch, later, error
     loop.step = 200.0  # longer than a piece
     assert loop.move_and_hold(None, 1.5, 1.5).time in 200.0 * np.arange(1, 9)
     loop.step = 1.0
-    assert (
-        loop.move_and_hold(None, 1.5, 1.501).time % 50.0 == 0.0
-    )  # without the 20 that it comes in
+    time = loop.move_and_hold(None, 1.5, 1.501).time
+    assert time % 50.0 == 0.0  # without the 20 that it comes in
 
 
 def test_where_a_speed_between_is_sought(monkeypatch):
@@ -466,10 +426,8 @@ def test_a_motion_nearer_to_the_one_before_is_held_on(monkeypatch, speed, again,
 
 def test_a_ramp_is_taken_up_in_the_middle_of_a_step_from_the_checkpoint_before(monkeypatch):
     asked = []
-    run = SimpleNamespace(
-        set_state=asked.append, run_steps_for_speeds=asked.append, get_state=lambda: "there"
-    )
-    run.close = list
+    run = SimpleNamespace(set_state=asked.append, run_steps_for_speeds=asked.append, close=list)
+    run.get_state = lambda: "there"
     loop = HysteresisLoop(lambda course: run, Ramp(1.4, 1.6, 1e-3), 2.0, 1.0, 1.0, 1.0)
     memories = (f"{name}_memory" for name in ("master", "balance", "revolution", "control"))
     table = dict.fromkeys(("oscillator_state", "shaker_state", *memories), np.arange(3))
@@ -509,7 +467,9 @@ def test_a_motion_whose_disturbances_grow_slowly_is_held_for_their_growth_time(s
 def test_a_fold(slope, up, start):
     """It is bracketed; -0.02: the other one is 5e-4 away."""
     (jump,) = decided(slope, up=up, start=start)
-    assert_at(jump, fold_of(slope, up))
+    low, high = sorted((jump.low, jump.high))
+    assert jump.outcome == LOST and high - low < 2.1e-4
+    assert low - 5e-6 <= fold_of(slope, up) <= high + 5e-6
 
 
 def test_a_steep_branch():
@@ -525,105 +485,3 @@ def test_a_short_hold_is_never_wrong(slope, longest):
     lost = slope < 0.0 and fold_of(slope) - fold_of(slope, up=False) > 1e-4
     assert outcomes <= {LOST, UNDECIDED} if lost else outcomes <= {UNDECIDED}
     assert outcomes or not lost
-
-
-def record_of(slips):
-    """The record of a ramp from 1.2 to 1.4 by slips at some times."""
-    time = np.arange(0.0, 2000.0, 5.0)
-    eta0 = 1.2 + 1e-4 * time
-    slip = np.interp(time, *zip(*slips, strict=True))
-    drive = SimpleNamespace(b=lambda _: 0.1, volts=lambda _: 1.0)
-    own = {"structure": SimpleNamespace(omega=1.0), "drive": drive}
-    job = SimpleNamespace(**own, schedule=Ramp(1.2, 1.4, 1e-4, back=False))
-    return time, RampRecord(job, {"time": time, "voltage": eta0, "speed": eta0 - slip}, up=True)
-
-
-def test_where_a_ramp_shows_a_jump():
-    """Late, where the slip falls from that before to that after; not at all if the ramp ends."""
-    time, ramp = record_of([(0, 0.03), (800, 0.03), (900, 0.01), (2000, 0.01)])
-    rows = ramp.row_positions_of_jump(1.26, 1.2601, 1.23, 1.2501)
-    before, half, after = np.interp(rows, range(len(time)), time)
-    assert before == pytest.approx(810.0, abs=15.0)
-    assert half == pytest.approx(850.0, abs=15.0) and after == pytest.approx(890.0, abs=15.0)
-    assert np.isnan(ramp.row_positions_of_jump(1.26, 1.2601, 1.23, 1.2901)).all()
-    assert jump_labels(["up", "down", "up"]) == ["up", "down", "up 2"]
-
-
-def test_a_ramp_that_is_past_a_jump_before_its_voltage():
-    """By an earlier one, its slip is below that after the jump from the first row on."""
-    _, ramp = record_of([(0, 0.01), (2000, 0.005)])
-    assert np.isfinite(ramp.row_positions_of_jump(1.26, 1.2601, 1.23, 1.2401)).all()
-
-
-CLOSE = system_of(  # its folds, by its branch, at 1.13468 and 1.13041
-    *(1.819477, 1.111004, 0.01933431, 0.04249591, 0.8220531),
-    **{"beta": 0.1295615, "epsilon": 0.001822262, "b": 0.02891932},
-    **{"Omega_b": 0.268049, "D_b": 0.005833275},
-).as_bonded()
-TAIL = system_of(  # two motions last at 1.638, of which the first is lost at 1.6415
-    *(2.55983, 2.06781, 0.01518, 0.01881, 0.86764, 1.44925),
-    **{"beta": 0.20942, "epsilon": 0.00099, "b": 0.01417, "Omega_b": 0.28779, "D_b": 0.04029},
-)
-DOWN = {"back": False, "settle": 100.0, "step": None}
-
-
-def bracket(found, system):
-    """The bracket of each jump, over K omega, ascending."""
-    volts = system.drive.volts(system.structure)
-    return np.sort([found.jump_low.values / volts, found.jump_high.values / volts], axis=0)
-
-
-@pytest.mark.slow
-def test_folds_that_are_close_through_both_fmus():
-    """A record of a ramp does not tell them from a steep branch."""
-    found = run(CLOSE, (1.2, 1.08), 2e-4, **DOWN).sel(jump="down")
-    low, high = bracket(found, CLOSE)
-    assert found.no_jump == "" and found.decided == "by held voltages"
-    assert low - 5e-5 < 1.13041 < high + 5e-5 and high - low < 2.1e-4
-
-
-def test_what_has_not_settled_is_undecided():
-    """And the answer says what helps."""
-    hold = 300.0 / CLOSE.structure.omega
-    found = run(CLOSE, (1.2, 1.08), 2e-4, hold=hold, **DOWN).sel(jump="down")
-    assert found.decided == "undecided" and np.isnan(found.jumps)
-    assert "longer hold" in str(found.no_jump.item())
-
-
-def test_a_ramp_that_ends_before_the_jump_shows():
-    """Past the fold at 1.5831; the bracket is as wide as the settings say."""
-    quick = QUICK.as_bonded()
-    wide = {"back": False, "step": None, "hysteresis": hysteresis.HysteresisSettings(width=2e-3)}
-    found = run(quick, (1.5, 1.59), 1e-4, **wide).sel(jump="up")
-    low, high = bracket(found, quick)
-    assert found.decided == "by held voltages"
-    assert low < 1.5831 < high and 1e-3 < high - low < 4.1e-3
-
-
-@pytest.mark.slow
-def test_a_second_jump_in_the_tail_of_a_larger_one_through_both_fmus():
-    """The record of the ramp shows one fall of the slip."""
-    found = run(TAIL, (1.535, 1.665), 2.5e-5, back=False, step=None).sel(jump=["up", "up 2"])
-    volts = TAIL.drive.volts(TAIL.structure)
-    assert found.jumps.values / volts == pytest.approx([1.5436, 1.6415], abs=2e-4)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("system", "place"), [(BEAM.as_bonded(), 1.37313), (BEAM, 1.37007)])
-def test_a_slow_loss_of_stability(system, place):
-    """The Neimark-Sacker points of the branches; past them growth is seen in time from 1e-3 on."""
-    found = run(system, (1.40, 1.33), 1e-4, back=False, step=None).sel(jump="down")
-    low, high = bracket(found, system)
-    assert found.decided == "by held voltages" and low < place < high and high - low < 4e-3
-
-
-@pytest.mark.slow
-def test_a_motor_that_turns_backward_has_the_mirrored_jump():
-    quick = QUICK.as_bonded()
-    found = run(quick, (-1.5, -1.65), 2e-4, back=False, step=None)
-    volts = quick.drive.volts(quick.structure)
-    assert float(found.jumps[0]) / volts == pytest.approx(-1.5831, abs=2e-4)
-    assert float(found.averaged_jumps[0]) / volts == pytest.approx(-1.58306, abs=1e-5)
-    assert float(found.ramp_voltage[0]) < float(found.jumps[0])
-    assert found.jump_speed_before[0] < -1.3 and found.motor[-1] > 0.0
-    assert found.sizes["revolution"] > 100
