@@ -132,7 +132,7 @@ def bonded_dividing_speed(structure: Structure, drive: Drive) -> float:
 def slope_polynomials(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
     """Return numerator and denominator of the slope d eta0 / d Omega as polynomials in Omega."""
     above, below = (  # with s = i Omega
-        Polynomial(part.coef * 1j ** np.arange(len(part.coef)))
+        Polynomial(np.asarray(part.coef, dtype=complex) * 1j ** np.arange(len(part.coef)))
         for part in response_polynomials(structure, drive)
     )
     conjugate = Polynomial(below.coef.conj())

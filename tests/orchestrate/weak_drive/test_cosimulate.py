@@ -30,22 +30,13 @@ MOTOR = {"inputs": {"voltage": 4.0}, "parameters": {"speed_start": 60.0}, "progr
 pytestmark = pytest.mark.usefixtures("exported")
 
 
-@pytest.fixture(scope="module")
-def drive(tmp_path_factory):
-    """The FMU of somebody else, by pythonfmu."""
-    from pythonfmu import FmuBuilder
-
-    folder = tmp_path_factory.mktemp("drive")
-    return FmuBuilder.build_FMU(table.__file__, dest=folder)
-
-
 NAMES = ("specimen_force", "volts", "table_acc", "table_pos", "table_vel")
 TABLE = replace(table_drive(table.NUMBERS), names=NAMES)
 
 
 @pytest.fixture
 def native(tmp_path, here):
-    """The same drive compiled, in this process."""
+    """The FMU of somebody else, in this process; it has no states."""
     return TABLE.write(tmp_path)
 
 
@@ -181,14 +172,9 @@ def test_a_course_is_a_cubic_for_a_shaker_that_takes_one(kinks):
         assert first < 1e-3 * np.abs(values[0]).max() and first / last > least
 
 
-def test_a_drive_without_states_is_said_to_begin_anew(drive, monkeypatch):
-    monkeypatch.setattr(cosimulate.CosimulateJob, "chunk_size", 10)
-    run = {**RUN, "duration": 0.4, "step": 0.01, "connect": CONNECT}
-    found, again = (orchestrate.cosimulate(STRUCTURE, drive, **run) for _ in range(2))
-    assert found.attrs["resumable"].startswith("no")
-    assert found.x1.values.tobytes() == again.x1.values.tobytes()
+def test_a_drive_without_states_is_said_to_begin_anew(native):
     job = cosimulate.CosimulateJob(
-        **{"name": "run", "structure": STRUCTURE, "drive": str(drive), "drive_sha256": ""},
+        **{"name": "run", "structure": STRUCTURE, "drive": str(native), "drive_sha256": ""},
         **{"connect": (), "duration": 0.4, "step": 0.01},
     )
     assert [(chunk.start, chunk.stop) for chunk in job.chunks()] == [(0, 40), (40, 41)]
@@ -209,24 +195,23 @@ def test_a_level_is_held_on_a_drive_of_somebody_else(native):
     assert abs(volts) > 1.0 and np.isnan(found.control_aborted)
 
 
-def test_a_drive_runs_without_a_structure(drive):
+def test_a_drive_runs_without_a_structure(native):
     """Against its own exponential under a constant voltage; with a picture, and no structure."""
     run = {**RUN, "inputs": {"volts": 3.0}, "duration": 0.5, "step": 0.01, "record": ["table_pos"]}
-    motion = {"box_acceleration": "table_acc"}
-    found = orchestrate.cosimulate(None, drive, connect=motion, **run)
-    own = table_drive(table.NUMBERS)
-    settled = -np.linalg.inv(own.a[:3, :3]) @ own.b[:3, 1] * 3.0
-    expected = [(settled - expm(own.a[:3, :3] * t) @ settled)[0] for t in found.time.values]
+    run, a = {**run, "parameters": TABLE.parameters}, TABLE.a[:3, :3]
+    found = orchestrate.cosimulate(None, native, connect={"box_acceleration": "table_acc"}, **run)
+    settled = -np.linalg.inv(a) @ TABLE.b[:3, 1] * 3.0
+    expected = [(settled - expm(a * t) @ settled)[0] for t in found.time.values]
     assert found.table_pos.values == pytest.approx(expected, abs=1e-12)
     assert set(found.data_vars) == {"box_acceleration", "table_pos"} and orchestrate.plot(found)
     with pytest.raises(InputError, match="box_force has no structure"):
-        orchestrate.cosimulate(None, drive, connect=CONNECT, **run)
+        orchestrate.cosimulate(None, native, connect=CONNECT, **run)
 
 
-def test_what_is_proposed_has_the_causality_and_a_name_like_ours(drive):
+def test_what_is_proposed_has_the_causality_and_a_name_like_ours(native):
     names = {"box_acceleration": "table_acc", "box_velocity": "table_vel"}
     names |= {"box_position": "table_pos", "box_force": "specimen_force"}
-    assert connection.propose_connections(describe(drive)) == names
+    assert connection.propose_connections(describe(native)) == names
     assert [connection.EXPONENTS[name]["s"] for name in connection.FORCE] == [-2, -3, -4, -5]
     links = {name: connection.Link("push", 1.0) for name in ("force2", "box_force")}
     assert connection.Connection(links).connected_pushes == ("force2",)

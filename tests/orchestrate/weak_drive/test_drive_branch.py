@@ -152,8 +152,8 @@ def points(branch, structure, kind):
 def test_folds_and_what_lies_between():
     """By the averaged theory, to 1e-4; unstable between both folds, and only there."""
     bonded = QUICK.as_bonded()
-    asked = {"speed": (1.27, 1.39), "longest": 0.15, "most": np.int64(30), "progress": False}
-    branch = drive_branch(*bonded, settle=200.0, steps=32, **asked)
+    asked = {"speed": (1.29, 1.385), "longest": 0.15, "most": np.int64(30), "progress": False}
+    branch = drive_branch(*bonded, settle=200.0, steps=24, **asked)
     up, down = averaged.folds(*bonded)
     assert points(branch, "bonded", "fold") == pytest.approx([up.eta0, down.eta0], abs=1e-4)
     leg = branch.sel(structure="bonded", leg="from below").dropna("point")

@@ -12,7 +12,7 @@ import orchestrate
 from orchestrate.errors import FmuError
 from orchestrate.weak_drive import cosimulate
 
-from .drives import table
+from .drives import exciter
 from .drives.linear import draw
 
 STRUCTURE = orchestrate.Structure(m1=0.5, m2=0.4, k1=300.0, k2=420.0, d1=0.4, d2=0.5, e=0.6)
@@ -119,18 +119,17 @@ def test_a_warning_is_shown_once_and_the_run_goes_on(tmp_path, form, does, words
 
 
 def test_a_process_of_its_own_keeps_python_modules_of_one_name_apart(tmp_path):
-    """As of two versions of pythonfmu: the second run has its own, with a force factor of 0."""
+    """As of two versions of pythonfmu: the second run has its own, of a box at rest."""
     from pythonfmu import FmuBuilder
 
     with pytest.warns(UserWarning, match="the FMU Linear warns: coil is warm"):
         assert len(run(tmp_path, "WARNS").time) == 21
-    first = FmuBuilder.build_FMU(table.__file__, dest=tmp_path)
+    first = FmuBuilder.build_FMU(exciter.__file__, dest=tmp_path, project_files=[])
     second = tmp_path / "second.fmu"
     with zipfile.ZipFile(first) as old, zipfile.ZipFile(second, "w") as new:
         for name in old.namelist():
-            new.writestr(name, old.read(name).replace(b'"bl": 12.0', b'"bl": 0.0'))
-    connect = {"box_acceleration": "table_acc", "box_force": "specimen_force"}
-    own = {**RUN, "start": None, "connect": connect, "inputs": {"volts": 20.0}}
+            new.writestr(name, old.read(name).replace(b"9.0, 0.02", b"9.0, 0.0"))
+    own = {**RUN, "start": None, "connect": {"box_acceleration": "acc", "box_force": "pull"}}
     moved = [orchestrate.cosimulate(STRUCTURE, one, **own).x1 for one in (first, second)]
     assert abs(moved[1]).max() < 1e-9 * abs(moved[0]).max()
 
