@@ -169,7 +169,7 @@ def propose_connections(drive: Description) -> dict[str, str]:
     - Derivatives of the force are proposed only by our own names, no variable is proposed twice,
       and without a motion and a force nothing is.
     """
-    found: dict[str, str] = {}
+    proposed: dict[str, str] = {}
     for ours in OURS:
         ranks = {}
         for name, variable in drive.variables.items():
@@ -177,12 +177,12 @@ def propose_connections(drive: Description) -> dict[str, str]:
             theirs = unit and unit.exponents
             rank = name_similarity(ours.partition("_")[2], name)
             fits = theirs == EXPONENTS[ours] or (theirs is None and rank == 1.0)
-            fits = fits and variable.type in REAL_TYPES and name not in found.values()
+            fits = fits and variable.type in REAL_TYPES and name not in proposed.values()
             if fits and variable.causality == ("input" if ours in FORCE else "output"):
                 ranks[name] = (theirs is not None, rank)
         if ranks and (ours not in FORCE[1:] or ours in ranks):
-            found[ours] = ours if ours in ranks else max(ranks, key=lambda name: ranks[name])
-    return found if FORCE[0] in found and set(MOTION) & set(found) else {}
+            proposed[ours] = ours if ours in ranks else max(ranks, key=lambda name: ranks[name])
+    return proposed if FORCE[0] in proposed and set(MOTION) & set(proposed) else {}
 
 
 def explain_proposal(drive: Description, ours: str, theirs: str) -> str:

@@ -189,11 +189,10 @@ def cosimulate(
         points=points,
     )
     check_input_connections(job.inputs, links)
-    found = compute_dataset(
-        job, running, make_fmu_finder(running), job.drive_sha256 if foreign else ""
-    )
-    warn_of_run(found, links, estimate)
-    return found
+    digest = job.drive_sha256 if foreign else ""
+    run = compute_dataset(job, running, make_fmu_finder(running), digest)
+    warn_of_run(run, links, estimate)
+    return run
 
 
 def checked_step(duration: float, step: float, drive: Description, estimate: bool) -> float:
@@ -279,9 +278,8 @@ def warn_of_run(run: xr.Dataset, links: Container[str], estimate: bool) -> None:
         if error > NOTICED * size:  # it may hide impacts or make some
             more = f" and connect {unconnected} if the drive has it" if unconnected else ""
             text = f"coupling error {error:.2g} m of displacements up to {size:.2g} m: "
-            text += (
-                "it diverges: look at units" if error > size else "impacts may be missed or added"
-            )
+            diverges = "it diverges: look at units"
+            text += diverges if error > size else "impacts may be missed or added"
             texts.append(f"{text}; reduce the step{more}")
     for text in texts:
         warnings.warn(text, stacklevel=3)

@@ -194,17 +194,17 @@ class CosimulateJob(CoupledJob, Question):
         for parts in self.step_divisions():
             before = previous and columns_of_division(previous, parts)
             if before and before["ended"][-1]:
-                found = {name: values[:0] for name, values in before.items()}  # nothing more
-                found["ended"] = before["ended"]
+                columns = {name: values[:0] for name, values in before.items()}  # nothing more
+                columns["ended"] = before["ended"]
             else:
                 with Instance(fmus[OSCILLATOR]) as one, Instance(self.drive, "drive") as drive:
                     coupling = CosimulationRun(self, one, drive, parts, float(response[0]))
                     if before:
                         coupling.set_state(before)
-                    found = {**coupling.run_communication_steps(steps), **coupling.get_state()}
+                    columns = {**coupling.run_communication_steps(steps), **coupling.get_state()}
                     coupling.close()
                     warned |= drive.warnings
-            table |= {f"{name} {parts}": values for name, values in found.items()}
+            table |= {f"{name} {parts}": values for name, values in columns.items()}
         table["warned"] = np.array(["\n".join(warned)])
         return table
 
@@ -336,27 +336,29 @@ class CosimulateJob(CoupledJob, Question):
         acceleration = variable("time", table["box_acceleration"], *shown["box_acceleration"])
         if self.is_drive_alone:
             return {"box_acceleration": acceleration}
-        found = {n: variable("time", table[n], *about) for n, about in shown.items() if n in table}
+        variables = {
+            n: variable("time", table[n], *about) for n, about in shown.items() if n in table
+        }
         if "box_velocity" in dict(self.connect):
-            found["box_work"] = variable(at_steps, table["box_work"], *work)
+            variables["box_work"] = variable(at_steps, table["box_work"], *work)
         text = "whether the masses are in permanent contact"
-        found["in_contact"] = yes_or_no("time", table["in_contact"], text)
-        return found | impact_variables(table)
+        variables["in_contact"] = yes_or_no("time", table["in_contact"], text)
+        return variables | impact_variables(table)
 
     def drive_variables(self, table: Table, at_steps: str) -> dict[str, Variable]:
-        count, found = len(table["step_time"]), {}
+        count, variables = len(table["step_time"]), {}
         recorded, finer = (table.get(f"recorded {i}", NOTHING)[:count].T for i in (1, 2))
         for i, name in enumerate(self.record):
             about = describe(self.drive).variable(name)
             text, unit = about.description or f"{name} of the drive", about.unit or "1"
-            found[name] = variable(at_steps, recorded[i], unit, text)
+            variables[name] = variable(at_steps, recorded[i], unit, text)
             if self.estimate:
                 error = TO_HALF * np.abs(recorded[i] - finer[i])
-                found[f"{name}_error"] = variable(at_steps, error, unit, f"error of {text}")
+                variables[f"{name}_error"] = variable(at_steps, error, unit, f"error of {text}")
         if "control_aborted" in table:
             text = "time at which the control gave up, NaN if it did not"
-            found["control_aborted"] = variable((), table["control_aborted"][-1], "s", text)
-        return found
+            variables["control_aborted"] = variable((), table["control_aborted"][-1], "s", text)
+        return variables
 
 
 def columns_of_division(table: Table, parts: int) -> Table:

@@ -72,14 +72,17 @@ class CoupleJob(MotorJob):
                 growth=growth_rate,
             )
             loop.add_checkpoints(table, self.chunk_size, self.step_count())
-            found = [(up, loop.decide_jumps(RampRecord(self, table, up))) for up in (True, False)]
-        jumps = [(up, tuple(jump)) for up, each in found for jump in each]
-        return {"verdicts": np.array(jumps, VERDICT)}
+            verdicts = [
+                (up, tuple(jump))
+                for up in (True, False)
+                for jump in loop.decide_jumps(RampRecord(self, table, up))
+            ]
+        return {"verdicts": np.array(verdicts, VERDICT)}
 
     def jumps_by_direction(self, table: Table) -> list[list[Jump]]:
         """Return the jumps of both directions; the first sure one stands for all."""
-        found = table["verdicts"]
-        each = (found["jump"][found["up"] == up].tolist() for up in (True, False))
+        verdicts = table["verdicts"]
+        each = (verdicts["jump"][verdicts["up"] == up].tolist() for up in (True, False))
         return [sorted(map(Jump._make, one), key=lambda jump: jump.outcome != LOST) for one in each]
 
     def dataset(self, table: Table) -> xr.Dataset:

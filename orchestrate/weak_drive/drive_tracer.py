@@ -28,75 +28,18 @@ from ..dynamics.tracer import (
     ContinuationSettings,
 )
 from ..model.structure import Structure
+from .extremes import gap_acceleration
 from .shooting import Period, Shooter
 from .step_record import OscillatorOutputs
 
 IMPACT, FLIGHT = KINDS[Kind.GRAZING], KINDS[Kind.TOUCHING]
 BACK = 3  # motions over which the slope of a margin is taken
-
-
-def measure_grazing_margins(
-    shooter: Shooter, unknowns: Floats, angle: float
-) -> tuple[float, float]:
-    """Return how far a motion is from grazing: by a flight, and by an impact, non-dimensional."""
-    # the smallest gap at which the masses turn away from each other without an impact,
-    # and the smallest closing speed of an impact, over omega
-    shooter.angle = angle
-    master, voltage = shooter.begin_period(unknowns)
-    gaps, closing = [math.inf], [math.inf]
-    for _ in range(shooter.period_steps):
-        before = master.motion
-        master.step(voltage)
-        if master.motion.impact_time != before.impact_time:
-            closing.append(float(shooter.fmus[0].get("impact_velocity")[0]))
-        elif before.v2 < before.v1 and master.motion.v2 >= master.motion.v1:
-            ends = before, master.motion
-            gaps.append(smallest_gap_in_step(shooter.structure, *ends, master.scheme.h))
-    length = float(shooter.units[0])
-    return min(gaps) / length, min(closing) / length / shooter.structure.omega
-
-
-def smallest_gap_in_step(
-    structure: Structure, before: OscillatorOutputs, after: OscillatorOutputs, h: float
-) -> float:
-    """Return the smallest gap within a step without an impact, m."""
-    from scipy.interpolate import BPoly, PPoly
-
-    ends = []
-    for outputs in (before, after):
-        first = (structure.k1 * outputs.x1 + structure.d1 * outputs.v1) / structure.m1
-        second = (structure.k2 * outputs.x2 + structure.d2 * outputs.v2) / structure.m2
-        ends.append([outputs.x_rel, outputs.v2 - outputs.v1, first - second])
-    gap = PPoly.from_bernstein_basis(BPoly.from_derivatives([0.0, h], ends))
-    return float(gap(gap.derivative().roots(extrapolate=False)).min())
-
-
-def extrapolate_next_grazing(
-    shooter: Shooter, motions: Sequence[tuple[Floats, float]]
-) -> tuple[Kind | None, float]:
-    """Extrapolate which grazing comes next along a branch, and how far away it is."""
-    last_motions = motions[-2 * BACK :]
-    falling = np.array([measure_grazing_margins(shooter, *motion) for motion in last_motions])
-    places = np.array([unknowns[-2:] for unknowns, _ in last_motions])
-    kind, distance = None, math.inf
-    for last in range(BACK, len(last_motions)):
-        first = last - BACK
-        distance_back = float(np.linalg.norm(places[last] - places[first]))
-        for i, each in enumerate((Kind.TOUCHING, Kind.GRAZING)):
-            before, now = float(falling[first, i]), float(falling[last, i])
-            ahead = distance_back * now / (before - now) if now < before < math.inf else math.inf
-            if ahead < min(distance, 5e-3):  # further on, no fall is extrapolated
-                kind, distance = each, ahead
-    return kind, distance
-
-
 NO_START = "no motion at the start"
 NOT_BEGUN = "not begun: the other leg has gone all the way"
 HALVED = "reaches the motion of half its period"
 UNFINISHED = KINDS[Kind.CONTACT_LOST]  # of a chattering that no longer comes to its end
 ENDS = (LIMIT, NO_CONVERGENCE, MAX_POINTS, NO_START, NOT_BEGUN, HALVED, FLIGHT, IMPACT, UNFINISHED)
 AT_GRAZING = 1e-4  # of voltage over K omega and speed over omega: so near, a grazing is located
-# or of the largest force in contact
 ITERATIONS = 12  # of Newton's method from a guess that is not of the branch itself
 
 
@@ -201,9 +144,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
             return
         last = segment.points[-1]
         motions = [each for each in segment.points if each.in_contact == last.in_contact]
-        kind, distance = extrapolate_next_grazing(
-            self.shooter, [(motion.root.unknowns, motion.angle) for motion in motions]
-        )
+        kind, distance = extrapolate_next_grazing(self.shooter, motions)
         segment.end = NO_CONVERGENCE if kind is None else KINDS[kind]
         kept = [each for each in segment.points[:-1] if distance_between(each, last) > AT_GRAZING]
         segment.points = [*kept, last]
@@ -266,3 +207,51 @@ def state_change_over_half_period(shooter: Shooter, root: continuation.Root) -> 
 def distance_between(first: Motion, second: Motion) -> float:
     """Return the distance of two motions in voltage and speed, both non-dimensional."""
     return float(np.linalg.norm(first.coordinates - second.coordinates))
+
+
+def measure_grazing_margins(shooter: Shooter, motion: Motion) -> tuple[float, float]:
+    """Return how far a motion is from grazing: by a flight, and by an impact, non-dimensional."""
+    # the smallest gap at which the masses turn away from each other without an impact,
+    # and the smallest closing speed of an impact, over omega
+    shooter.angle = motion.angle
+    master, voltage = shooter.begin_period(motion.root.unknowns)
+    gaps, closing = [math.inf], [math.inf]
+    for _ in range(shooter.period_steps):
+        before = master.motion
+        master.step(voltage)
+        if master.motion.impact_time != before.impact_time:
+            closing.append(float(shooter.fmus[0].get("impact_velocity")[0]))
+        elif before.v2 < before.v1 and master.motion.v2 >= master.motion.v1:
+            ends = before, master.motion
+            gaps.append(smallest_gap_in_step(shooter.structure, ends, master.scheme.h))
+    length = float(shooter.units[0])
+    return min(gaps) / length, min(closing) / length / shooter.structure.omega
+
+
+def smallest_gap_in_step(
+    structure: Structure, ends: Sequence[OscillatorOutputs], h: float
+) -> float:
+    """Return the smallest gap within a step without an impact, m."""
+    from scipy.interpolate import BPoly, PPoly
+
+    derivatives = [[m.x_rel, m.v2 - m.v1, gap_acceleration(structure, m)] for m in ends]
+    gap = PPoly.from_bernstein_basis(BPoly.from_derivatives([0.0, h], derivatives))
+    return float(gap(gap.derivative().roots(extrapolate=False)).min())
+
+
+def extrapolate_next_grazing(
+    shooter: Shooter, motions: Sequence[Motion]
+) -> tuple[Kind | None, float]:
+    """Extrapolate which grazing comes next along a branch, and how far away it is."""
+    late = motions[-2 * BACK :]
+    margins = np.array([measure_grazing_margins(shooter, motion) for motion in late])
+    kind, distance = None, math.inf
+    for last in range(BACK, len(late)):
+        first = last - BACK
+        distance_back = distance_between(late[last], late[first])
+        for i, each in enumerate((Kind.TOUCHING, Kind.GRAZING)):
+            before, now = float(margins[first, i]), float(margins[last, i])
+            ahead = distance_back * now / (before - now) if now < before < math.inf else math.inf
+            if ahead < min(distance, 5e-3):  # further on, no fall is extrapolated
+                kind, distance = each, ahead
+    return kind, distance

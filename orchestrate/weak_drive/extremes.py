@@ -18,6 +18,13 @@ from .polynomials import Cubic, end_derivatives
 from .step_record import Floats, OscillatorOutputs, Record
 
 
+def gap_acceleration(structure: Structure, motion: OscillatorOutputs) -> Any:
+    """Return the acceleration of the gap by springs and dampers, m/s2, were the masses free."""
+    s = structure
+    first = (s.k1 * motion.x1 + s.d1 * motion.v1) / s.m1
+    return first - (s.k2 * motion.x2 + s.d2 * motion.v2) / s.m2
+
+
 class Range(NamedTuple):
     """Store the lowest and the highest position over each step, m."""
 
@@ -78,27 +85,26 @@ def range_of_mass_1(structure: Structure, record: Record) -> Range:
     h = record.after["h"]
     hit = after.impact_time - record.before["time"]
     impact = (after.impact_time != before.impact_time) & (hit >= 0.0) & (hit <= h)
-    found = Range(np.minimum(before.x1, after.x1), np.maximum(before.x1, after.x1))
+    reached = Range(np.minimum(before.x1, after.x1), np.maximum(before.x1, after.x1))
     turning = np.flatnonzero(impact | (before.v1 * after.v1 < 0.0))
     last = np.where(impact, hit, h)[turning]
-    series = derivatives_of_x1(
-        structure, select_steps(before, turning), select_steps(cubic, turning)
-    )
-    found.widen(turning, extrema(series, 0.0 * last, last))
+    begin = (select_steps(columns, turning) for columns in (before, cubic))
+    reached.widen(turning, extrema(derivatives_of_x1(structure, *begin), 0.0 * last, last))
     struck = np.flatnonzero(impact)
     end = end_derivatives(select_steps(cubic, struck), h[struck])
     back = derivatives_of_x1(structure, select_steps(after, struck), end)
-    return found.widen(struck, extrema(back, (hit - h)[struck], 0.0 * h[struck]))
+    return reached.widen(struck, extrema(back, (hit - h)[struck], 0.0 * h[struck]))
 
 
 def range_of_box(record: Record) -> Range:
     position, velocity = record["box_position"], record["box_velocity"]
-    found = Range(np.minimum(position[:-1], position[1:]), np.maximum(position[:-1], position[1:]))
+    ends = position[:-1], position[1:]
+    reached = Range(np.minimum(*ends), np.maximum(*ends))
     turning = np.flatnonzero(velocity[:-1] * velocity[1:] < 0.0)
     cubic = select_steps(record.after.acceleration_cubics(), turning)
     h = record.after["h"][turning]
     series = (position[turning], velocity[turning], *cubic)
-    return found.widen(turning, extrema(series, 0.0 * h, h))
+    return reached.widen(turning, extrema(series, 0.0 * h, h))
 
 
 def select_steps(values: Any, steps: Any) -> Any:

@@ -92,9 +92,8 @@ class Inputs:
 
     def run_master(self, master: Master, steps: range, h: float, equal_from: int = 0) -> Record:
         """Run both FMUs over some steps of one length, which all have from `equal_from` on."""
-        earlier = min(
-            2, steps.start - equal_from
-        )  # steps whose first moments are made up for in these
+        # steps before whose first moments are made up for in these
+        earlier = min(2, steps.start - equal_from)
         edges = np.arange(steps.start - earlier, steps.stop + 1, dtype=np.float64) * h
         rows = self.rows_over_steps(edges, master.input_width, earlier)
         if self.control is None:

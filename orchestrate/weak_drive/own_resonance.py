@@ -33,6 +33,7 @@ def elastic_resonance(structure: Structure, drive: Drive) -> float:
     from scipy.optimize import brentq
 
     w, n = free_modes_of_gap(structure, drive)
+    turns = np.linspace(-1.0, 1.0, 401)[1:-1]  # half ones, from an impact to the next
 
     def gap_at_impact(Omega: float) -> float:
         return float((n**2 / (w * np.tan(w * np.pi / Omega))).sum())
@@ -44,7 +45,10 @@ def elastic_resonance(structure: Structure, drive: Drive) -> float:
         ends = low * (1.0 + 1e-9), high * (1.0 - 1e-9)  # not at the poles themselves
         if gap_at_impact(ends[0]) < 0.0 < gap_at_impact(ends[1]):
             root = float(brentq(gap_at_impact, *ends, xtol=1e-12))
-            if gap_keeps_sign(w, n, root):
+            gaps = np.cos(np.outer(np.pi / root * turns, w)) @ (
+                n**2 / (w * np.sin(w * np.pi / root))
+            )
+            if (gaps > 0.0).all() or (gaps < 0.0).all():  # whatever the sign of the mode
                 roots.append(root)
     return min(roots, key=lambda root: abs(root - bonded), default=bonded)
 
@@ -60,13 +64,6 @@ def free_modes_of_gap(structure: Structure, drive: Drive) -> tuple[np.ndarray, n
     springs = np.diag([beta, beta * structure.kappa, drive.Omega_b(structure) ** 2])
     squares, modes = eigh(springs, inertia)
     return np.sqrt(np.maximum(squares, 1e-6**2)), modes[1] - modes[0]  # of a box without springs
-
-
-def gap_keeps_sign(w: np.ndarray, n: np.ndarray, Omega: float) -> bool:
-    """Return whether no impact comes between, whatever the sign of the mode."""
-    angles = np.pi / Omega * np.linspace(-1.0, 1.0, 401)[1:-1]
-    gaps = np.cos(np.outer(angles, w)) @ (n**2 / (w * np.sin(w * np.pi / Omega)))
-    return bool((gaps > 0.0).all() or (gaps < 0.0).all())
 
 
 def lower_and_higher_resonance(structure: Structure, drive: Drive) -> tuple[float, float]:

@@ -72,15 +72,11 @@ class PassageJob(couple.CoupleJob):
         away = np.abs(samples["time"][:, np.newaxis] - centres).min(axis=1, initial=math.inf)
         span = math.inf if self.around is None else (1.0 + 1e-9) * self.around
         kept = np.flatnonzero(away <= span)
-        variables = {
-            name: variable("time", samples[name][kept], *SAMPLES[name]) for name in SAMPLES
-        }
+        variables = {n: variable("time", samples[n][kept], *text) for n, text in SAMPLES.items()}
         time = {"time": variables.pop("time")}
-        of_jumps = revolutions.drop_dims("revolution")
         title = f"Passage through the resonance, {self.structure.kind} structure"
-        return xr.Dataset(
-            variables, time, {**revolutions.attrs, "title": title, "kept": what}
-        ).merge(of_jumps)
+        attributes = {**revolutions.attrs, "title": title, "kept": what}
+        return xr.Dataset(variables, time, attributes).merge(revolutions.drop_dims("revolution"))
 
     def sample_centres_and_description(self, revolutions: xr.Dataset) -> tuple[np.ndarray, str]:
         """Return the times around which samples are kept, s, and a text on them."""
@@ -245,11 +241,9 @@ def check_waterfall_arguments(data: Any, mass: int, revolutions: int, highest: f
     checked_integer("mass", mass, 1, 2)
     checked_integer("revolutions", revolutions, 1)
     checked_range("highest", highest, "times the speed", low=0.0, open_low=True)
-    missing = {"angle", "x1", "v1", "box_position", "box_velocity"} - set(
-        getattr(data, "variables", ())
-    )
-    if missing:
-        raise InputError(f"no {sorted(missing)[0]} in the dataset: expected one of passage()")
+    for name in ("angle", "box_position", "box_velocity", "v1", "x1"):
+        if name not in getattr(data, "variables", ()):
+            raise InputError(f"no {name} in the dataset: expected one of passage()")
     gaps = np.diff(data.time.values)
     if not gaps.size or gaps.max() > 1.5 * gaps.min():
         raise InputError(

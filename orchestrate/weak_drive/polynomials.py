@@ -31,10 +31,10 @@ def end_derivatives(cubic: Cubic, h: Any) -> Cubic:
 def call_cubic_function(name: str, numbers: Sequence[Any]) -> NDArray[np.float64]:
     """Return the cubics that a function of the compiled loop makes of five numbers each."""
     rows = np.ascontiguousarray(np.stack(np.broadcast_arrays(*numbers), axis=-1), dtype=float)
-    found = np.empty((*rows.shape[:-1], 4))
-    tables = (c_void_p(rows.ctypes.data), rows.size // 5, c_void_p(found.ctypes.data))
+    cubics = np.empty((*rows.shape[:-1], 4))
+    tables = (c_void_p(rows.ctypes.data), rows.size // 5, c_void_p(cubics.ctypes.data))
     getattr(load_loop("couple"), name)(*tables)
-    return found
+    return cubics
 
 
 def mean_value(cubic: Cubic, h: Any) -> Any:

@@ -57,8 +57,8 @@ class Revolutions:
         largest = np.stack([of_mass.high, -of_mass.low, of_box.high, -of_box.low, shaken])
         voltage, x1, y = record["voltage"], record["x1"], record["box_position"]
         rows, begin = [], 0
-        for place, time, speed, impacts in self.complete_revolutions(record).tolist():
-            end = int(place)
+        for position, time, speed, impacts in self.complete_revolutions(record).tolist():
+            end = int(position)
             self._raise_largest(largest[:, begin:end])
             x_high, x_low, y_high, y_low, acceleration = self.largest.tolist()
             ranges = 0.5 * (x_high + x_low), 0.5 * (y_high + y_low)
@@ -72,13 +72,13 @@ class Revolutions:
     def complete_revolutions(self, record: Record) -> Floats:
         """Return where a record completes revolutions: place, time, mean speed, and impacts."""
         table, ends = record.columns, record.ends.astype(np.intc)
-        found = np.empty((len(ends), 4))
+        completed = np.empty((len(ends), 4))
         across, along = (c_size_t(stride // table.itemsize) for stride in table.strides)
-        values, places, last, rows = (
-            c_void_p(one.ctypes.data) for one in (table, ends, self.last, found)
+        values, end_positions, last, rows = (
+            c_void_p(one.ctypes.data) for one in (table, ends, self.last, completed)
         )
         find = load_loop("couple").find_revolutions
-        return found[: find(values, along, across, places, len(ends), last, rows)]
+        return completed[: find(values, along, across, end_positions, len(ends), last, rows)]
 
     def _raise_largest(self, largest: Floats) -> None:
         self.largest = np.maximum(self.largest, largest.max(axis=1, initial=NOTHING))

@@ -61,7 +61,9 @@ class Run:
         self.master.close()
 
     def get_state(self) -> Table:
-        table: dict[str, Any] = {n + STATE: one.save_state() + END for n, one in self._saved.items()}
+        table: dict[str, Any] = {
+            n + STATE: one.save_state() + END for n, one in self._saved.items()
+        }
         table |= {name + MEMORY: one.numbers_to_resume() for name, one in self._memories.items()}
         table["control" + MEMORY] = self.inputs.state
         return {name: np.array([value]) for name, value in table.items()}

@@ -8,6 +8,7 @@ motions make a curve, which :mod:`orchestrate.dynamics.continuation` follows rou
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +21,7 @@ from ..fmu.instance import Instance
 from ..model.drive import Drive
 from ..model.structure import Structure
 from .connection import MOTOR
-from .extremes import range_of_mass_1
+from .extremes import gap_acceleration, range_of_mass_1
 from .master import Master, Scheme
 from .run import oscillator_start_values
 from .step_record import LEADING, Record
@@ -208,12 +209,8 @@ class Shooter:
         record = master.run(np.full(self.period_steps, voltage))
         reached = range_of_mass_1(self.structure, record)
         amplitude = 0.5 * float(reached.high.max() - reached.low.min())
-        return Period(
-            amplitude,
-            int(master["impacts"]),
-            self.revolutions,
-            *self.find_best_start(record.before),
-        )
+        start = self.find_best_start(record.before)
+        return Period(amplitude, int(master["impacts"]), self.revolutions, *start)
 
     def find_best_start(self, record: Record) -> tuple[int, float, bool, bool]:
         """Find the step farthest from impacts; return a Period's last four fields."""
@@ -221,12 +218,10 @@ class Shooter:
         in_contact, sticks = self.in_contact and not sizes.any(), False
         if self.structure.preload > 0.0:
             sticks = bool((sizes == 0.0).any())
-            s = self.structure
-            x1, v1, x2, v2, gap = (record[name] for name in ("x1", "v1", "x2", "v2", "x_rel"))
-            parting = (s.k1 * x1 + s.d1 * v1) / s.m1 - (s.k2 * x2 + s.d2 * v2) / s.m2
-            touching = (gap == 0.0) & (v1 == v2)
+            s, motion = self.structure, record.motion()
+            touching = (motion.x_rel == 0.0) & (motion.v1 == motion.v2)
             inside = touching & np.roll(touching, 1) & np.roll(touching, -1)
-            force = -parting * s.m1 * s.m2 / (s.m1 + s.m2)
+            force = -gap_acceleration(s, motion) * s.m1 * s.m2 / (s.m1 + s.m2)
             forces = np.where(inside, np.maximum(force, 0.0), 0.0)
             in_contact = in_contact or bool(forces.any())
             sizes = forces if in_contact else sizes
@@ -271,9 +266,8 @@ class Shooter:
 
     def compute_jacobian(self, unknowns: Floats) -> Floats:
         base = self.shoot(unknowns)
-        matrix = np.stack(
-            [self.jacobian_column(unknowns, i, base) for i in range(len(unknowns))], axis=1
-        )
+        columns = [self.jacobian_column(unknowns, i, base) for i in range(len(unknowns))]
+        matrix = np.stack(columns, axis=1)
         matrix[: self.size, : self.size] -= np.eye(self.size)
         self.jacobian_matrix, residual = matrix, base.end.copy()
         residual[: self.size] -= unknowns[: self.size]
@@ -290,15 +284,14 @@ class Shooter:
                 known[change] = self.shoot(moved)
             return known[change].end if known[change].is_connected_to(base) else None
 
-        for change in (1e-6, 1e-7):  # of the unknown: the first that will do
-            for difference in (central_difference, one_sided_difference):
-                for size in (change,) if difference is central_difference else (change, -change):
-                    fine = difference(end_state_shifted_by, size)
-                    coarse = difference(end_state_shifted_by, 2.0 * size)
-                    if fine is None or coarse is None:
-                        continue
-                    if np.abs(fine - coarse).max() <= 1e-3 * max(1.0, np.abs(fine).max()):
-                        return (4.0 * fine - coarse) / 3.0  # Richardson
+        sides = (central_difference, 1.0), (one_sided_difference, 1.0), (one_sided_difference, -1.0)
+        for change, (difference, side) in product((1e-6, 1e-7), sides):  # the first that will do
+            fine = difference(end_state_shifted_by, side * change)
+            coarse = difference(end_state_shifted_by, 2.0 * side * change)
+            if fine is None or coarse is None:
+                continue
+            if np.abs(fine - coarse).max() <= 1e-3 * max(1.0, np.abs(fine).max()):
+                return (4.0 * fine - coarse) / 3.0  # Richardson
         raise NoConvergenceError("a grazing is too near for a derivative")
 
     def floquet_multipliers(self) -> np.ndarray:
