@@ -165,7 +165,7 @@ def together(drive, s, command, times, start=(0.0,) * 4):
     # masses that are pressed together at first are let apart where they part, a step later
     state = np.array([start[0], start[1] or 1e-14, *start[2:], *np.zeros(len(drive.c))])
     while time < times[-1]:
-        asked = {"t_eval": times[time + 1e-12 < times], "events": ends, "max_step": 0.01}
+        asked = {"t_eval": times[time + 1e-12 < times], "events": ends, "max_step": 0.05}
         done = solve_ivp(rates, (time, times[-1]), state, "DOP853", **asked, rtol=1e-11, atol=1e-14)
         points = np.reshape(done.y, (len(state), -1))[:2].T
         rows |= dict(zip(np.round(done.t, 9), points, strict=True))
