@@ -8,7 +8,7 @@ not depend on communication points.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
@@ -61,14 +61,9 @@ class CosimulationRun(Run):
     """Both FMUs of a job, stepped together at its step or a part of it."""
 
     def __init__(
-        self,
-        job: CosimulateJob,
-        oscillator: Instance,
-        drive: Instance,
-        parts: int,
-        inverse_mass: float,
+        self, job: CosimulateJob, fmus: tuple[Instance, Instance], parts: int, inverse_mass: float
     ) -> None:
-        self.job, self.parts = job, parts
+        (oscillator, drive), self.job, self.parts = fmus, job, parts
         still = Excitation(frequency=job.structure.omega, amplitude=0.0)
         start_motion(oscillator, job.structure, still, job.start)
         inputs = Inputs(job.inputs, drive.description)
@@ -183,9 +178,7 @@ class CosimulateJob(CoupledJob, Question):
         return [Chunk(0, 0, last, None), Chunk(1, last, last + 1, 0)]
 
     def progress_note(self, first: int) -> str:
-        if first or describe(self.drive).saves_states:
-            return ""
-        return "run (not resumable)"
+        return "" if first or describe(self.drive).saves_states else "run (not resumable)"
 
     def advance(self, fmus: Fmus, steps: range, previous: Table | None) -> Table:
         response = previous["response"][-1] if previous else self.measure_response_to_force()
@@ -198,7 +191,7 @@ class CosimulateJob(CoupledJob, Question):
                 columns["ended"] = before["ended"]
             else:
                 with Instance(fmus[OSCILLATOR]) as one, Instance(self.drive, "drive") as drive:
-                    coupling = CosimulationRun(self, one, drive, parts, float(response[0]))
+                    coupling = CosimulationRun(self, (one, drive), parts, float(response[0]))
                     if before:
                         coupling.set_state(before)
                     columns = {**coupling.run_communication_steps(steps), **coupling.get_state()}
@@ -217,7 +210,10 @@ class CosimulateJob(CoupledJob, Question):
         return checked_links(dict(self.connect), drive, dict(self.units), self.is_drive_alone)
 
     def measure_response_to_force(self) -> Floats:
-        """Return the box's acceleration by 1 N at once, m/s2, and which part of it in a step."""
+        """Return the box's acceleration by 1 N at once, m/s2, and which part of it in a step.
+
+        Raise ``InputError`` if it moves against the force.
+        """
         seen: list[Any] = []
         if "box_force" not in dict(self.connect):
             return np.array([0.0, math.nan])
@@ -240,18 +236,13 @@ class CosimulateJob(CoupledJob, Question):
         means = np.array([2.0 / self.step**2, 1.0 / self.step, 1.0]) * late
         soon = np.array([2.0 / short**2, 1.0 / short]) * early[0][:2] if early else means[:2]
         at_once = next((x for x in (begin[2], *soon[::-1]) if math.isfinite(x)), math.nan)
-        self.check_force_sign([at_once, *means], connection.links)
-        mean = next(x for x in means[[1, 0, 2]] if math.isfinite(x))
-        return np.array([at_once, mean / at_once if at_once else math.nan])
-
-    def check_force_sign(self, responses: Sequence[float], links: Mapping[str, Link]) -> None:
-        """Raise ``InputError`` if the first response to the force that is one goes against it."""
-        moved = next((x for x in responses if math.isfinite(x) and x), 0.0)
+        moved = next((x for x in (at_once, *means) if math.isfinite(x) and x), 0.0)
         if moved < 0.0 and self.force_sign == "tested":
             text = f"1 N of box_force accelerates the box by {moved:.2g} m/s2, against the force; "
-            text += f"connect {format_reversed_force(links)}, or say "
-            text += "force_sign='given' if that is meant"
-            raise InputError(text)
+            text += f"connect {format_reversed_force(connection.links)}, or say "
+            raise InputError(f"{text}force_sign='given' if that is meant")
+        mean = next(x for x in means[[1, 0, 2]] if math.isfinite(x))
+        return np.array([at_once, mean / at_once if at_once else math.nan])
 
     def inputs_left_at_start(self, drive: Description) -> Iterator[str]:
         """Yield ``name = start unit`` of each of the drive's inputs that nothing is given for."""
