@@ -20,14 +20,13 @@ from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..fmu.exported import make_fmu_finder
-from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer, checked_list, checked_pair
 from ..model.drive import Drive
 from ..model.ranges import DRIVE, checked_range
 from ..model.structure import Structure
 from ..response.labels import parameter_variable, variable, yes_or_no
-from ..running.job import Fmus, Job, Table
+from ..running.job import Fmus, Table
 from ..running.options import Running
 from ..running.runner import compute_dataset
 from . import averaged
@@ -42,7 +41,7 @@ from .capture_rule import (
 from .controllers import Controller
 from .couple import make_couple_job, require_motor, scheme_from_arguments
 from .master import Scheme
-from .run import MotorJob, MotorRun, motor_run_starter
+from .run import DriveJob, MotorJob, MotorRun, motor_run_starter
 from .schedule import Constant
 
 DRIVE_NAMES = tuple(field.name for field in fields(Drive))
@@ -56,12 +55,10 @@ class System(NamedTuple):
 
 
 @dataclass(frozen=True)
-class CaptureJob(Job):
+class CaptureJob(DriveJob):
     """Run starts from rest at several voltages for each value of a parameter."""
 
     asked: ClassVar[str] = "capture"
-    structure: Structure
-    drive: Drive
     over: str  # empty for none
     values: tuple[float, ...]
     voltages: tuple[float, ...]  # V, rising
@@ -71,7 +68,6 @@ class CaptureJob(Job):
     scheme: Scheme
     control: Controller | None = None
 
-    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, MOTOR_SHAKER)
     item: ClassVar[str] = "value"
 
     def items(self) -> Sequence[System]:

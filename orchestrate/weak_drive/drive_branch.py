@@ -28,7 +28,7 @@ from ..model.drive import Drive
 from ..model.ranges import checked_range
 from ..model.structure import Structure
 from ..response.labels import Variable, variable
-from ..running.job import Fmus, Job, Table
+from ..running.job import Fmus, Table
 from ..running.options import Running
 from ..running.runner import compute_dataset
 from . import averaged, own_resonance
@@ -45,6 +45,7 @@ from .drive_tracer import (
     find_motion_near,
 )
 from .master import MAX_STEPS
+from .run import DriveJob
 from .shooting import Shooter
 
 LEGS = ("from below", "from above", "first doubled", "second doubled")
@@ -61,12 +62,10 @@ Leg = BranchSegment[Motion]
 
 
 @dataclass(frozen=True)
-class DriveBranchJob(Job):
+class DriveBranchJob(DriveJob):
     """Trace the branches of the bonded and the delaminated structure."""
 
     asked: ClassVar[str] = "drive_branch"
-    structure: Structure
-    drive: Drive
     speeds: tuple[float, float]
     longest: float
     most: int
@@ -74,11 +73,7 @@ class DriveBranchJob(Job):
     steps: int
     settle: float
 
-    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, MOTOR_SHAKER)
     item: ClassVar[str] = "branch"
-
-    def items(self) -> Sequence[Structure]:
-        return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def work(self, fmus: Fmus, items: Sequence[Structure], previous: Table | None) -> Table:
         rows = []

@@ -17,7 +17,6 @@ import numpy as np
 from ..constants import TURN
 from ..errors import InputError
 from ..fmu.exported import make_fmu_finder
-from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer, checked_number
 from ..model.drive import Drive
@@ -25,34 +24,27 @@ from ..model.ranges import checked_range
 from ..model.structure import Structure
 from ..response.labels import variable
 from ..response.spectra import amplitude_spectrum
-from ..running.job import Fmus, Job, Table
+from ..running.job import Fmus, Table
 from ..running.options import Running
 from ..running.runner import compute_dataset
 from . import averaged, own_resonance
 from .couple import KINDS, make_couple_job, require_motor, scheme_from_arguments
 from .master import MAX_STEPS
-from .run import open_motor_run
+from .run import DriveJob, open_motor_run
 from .schedule import Ramp
 
 
 @dataclass(frozen=True)
-class DriveSpectraJob(Job):
+class DriveSpectraJob(DriveJob):
     """Compute the spectra of the bonded and the delaminated structure."""
 
     asked: ClassVar[str] = "drive_spectra"
-    structure: Structure
-    drive: Drive
     approach: Ramp  # how the voltage gets where it is held
     hold: float
     step: float
     revolutions: int
     points: int
     highest: float
-
-    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, MOTOR_SHAKER)
-
-    def items(self) -> Sequence[Structure]:
-        return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def orders(self) -> np.ndarray:
         """Return the spectral lines as multiples of the motor's speed."""

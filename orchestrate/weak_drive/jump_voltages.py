@@ -15,14 +15,13 @@ import numpy as np
 
 from ..errors import InputError
 from ..fmu.exported import make_fmu_finder
-from ..fmu.models import MOTOR_SHAKER, OSCILLATOR
 from ..lazy import Unpack, xr
 from ..model.arguments import checked_list
 from ..model.drive import Drive
 from ..model.ranges import STRUCTURE
 from ..model.structure import Structure
 from ..response.labels import variable
-from ..running.job import Fmus, Job, Table
+from ..running.job import Fmus, Table
 from ..running.options import Running
 from ..running.runner import compute_dataset
 from .capture import System, checked_parameter_values
@@ -38,6 +37,7 @@ from .couple import (
 from .hysteresis import Jump
 from .master import Scheme
 from .ramp_record import RampRecord
+from .run import DriveJob
 from .schedule import Ramp
 
 IGNORED = ("clearance", "e", "e_slope", "gamma")  # by the bonded structure
@@ -45,24 +45,21 @@ COLUMNS = ("jumps", "jump_low", "jump_high")
 
 
 @dataclass(frozen=True)
-class JumpVoltagesJob(Job):
+class JumpVoltagesJob(DriveJob):
     """Run ramps at several rates for the bonded and the delaminated structure."""
 
     asked: ClassVar[str] = "jump_voltages"
-    structure: Structure
-    drive: Drive
     schedules: tuple[Ramp, ...]  # one for each rate, slowest first
     scheme: Scheme
     over: str = ""  # a parameter that the bonded structure ignores
     values: tuple[float, ...] = ()
 
-    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, MOTOR_SHAKER)
     item: ClassVar[str] = "structure"
 
     def items(self) -> Sequence[Structure]:
-        parted = self.structure.as_delaminated()
+        bonded, parted = super().items()
         varied = [parted.replace(**{self.over: value}) for value in self.values] or [parted]
-        return [self.structure.as_bonded(), *varied]
+        return [bonded, *varied]
 
     def work(self, fmus: Fmus, items: Sequence[Structure], previous: Any) -> Table:
         rows, shown, decided = [], [], []

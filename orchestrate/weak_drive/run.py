@@ -111,11 +111,22 @@ class CoupledJob(Job, ABC):
 
 
 @dataclass(frozen=True)
-class MotorJob(CoupledJob):
-    """Define what determines a run of our own motor: system, schedule, scheme and control."""
+class DriveJob(Job):
+    """Base of what is computed of a structure with our own motor, by default bonded and not."""
 
     structure: Structure
     drive: Drive
+
+    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, MOTOR_SHAKER)
+
+    def items(self) -> Sequence[Any]:
+        return self.structure.as_bonded(), self.structure.as_delaminated()
+
+
+@dataclass(frozen=True)
+class MotorJob(CoupledJob, DriveJob):
+    """Define what determines a run of our own motor: system, schedule, scheme and control."""
+
     schedule: Schedule
     scheme: Scheme
     speed_start: float  # of the motor, rad/s
@@ -123,8 +134,6 @@ class MotorJob(CoupledJob):
     hold: float
     # what takes the voltage from the schedule; the motor gets all of it if there is no such part
     control: Controller | None = None
-
-    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, MOTOR_SHAKER)
 
     def step_count(self) -> int:
         return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)

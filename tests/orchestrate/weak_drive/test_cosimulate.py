@@ -13,6 +13,7 @@ from orchestrate.weak_drive import connection, cosimulate
 
 from ...sparing import ordinary
 from .drives import table
+from .drives.linear import displacement_error as error
 from .drives.linear import draw, sine, table_drive, together
 
 STRUCTURE = orchestrate.Structure(m1=0.5, m2=0.4, k1=300.0, k2=420.0, d1=0.4, d2=0.5, e=0.6)
@@ -38,12 +39,6 @@ TABLE = replace(table_drive(table.NUMBERS), names=NAMES)
 def native(tmp_path, here):
     """The FMU of somebody else, in this process; it has no states."""
     return TABLE.write(tmp_path)
-
-
-def error(run, truth):
-    every = (run.sizes["time"] - 1) // (len(TIMES) - 1)
-    both = np.column_stack([run.x1.values, run.x2.values])[::every]
-    return np.abs(both - truth).max()
 
 
 def test_errors_under_a_sine_of_the_voltage_fall_with_the_step(native):

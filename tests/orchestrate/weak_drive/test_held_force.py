@@ -7,7 +7,7 @@ import pytest
 
 import orchestrate
 
-from .drives.linear import table_drive, together
+from .drives.linear import displacement_error, table_drive, together
 from .monolithic import Monolith
 
 STEPS = (0.1, 0.05, 0.025)
@@ -52,12 +52,6 @@ def system_of(name, letters, folder, exported):
     return drive.write(folder), {**own, "connect": drive.connected(letters)}, *truth
 
 
-def error(run, truth):
-    every = (len(TIMES) - 1) // (run.sizes["time"] - 1)
-    both = np.column_stack([run.x1.values, run.x2.values])
-    return np.abs(both - truth[::every]).max()
-
-
 @pytest.mark.usefixtures("here")
 @pytest.mark.parametrize(("name", "letters"), ERRORS)
 def test_a_held_force_costs_no_order(tmp_path, exported, name, letters):
@@ -67,7 +61,7 @@ def test_a_held_force_costs_no_order(tmp_path, exported, name, letters):
     for step, most in zip(STEPS, ERRORS[name, letters], strict=True):
         found = orchestrate.cosimulate(STRUCTURE, drive, step=step, **run)
         assert found.sizes["impact"] == impacts >= 6
-        errors.append(error(found, truth))
+        errors.append(displacement_error(found, truth))
         assert errors[-1] <= most
     assert np.polyfit(np.log(STEPS), np.log(errors), 1)[0] > ORDER.get(letters, 2.7)
 

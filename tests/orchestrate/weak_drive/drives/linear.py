@@ -183,6 +183,14 @@ def together(drive, s, command, times, start=(0.0,) * 4):
     return np.array([rows[time] for time in np.round(times, 9)]), impacts
 
 
+def displacement_error(run, truth):
+    """Largest error of x1 and x2, m, at the times that a run and the truth have in common."""
+    coarse = min(run.sizes["time"], len(truth)) - 1
+    both = np.column_stack([run.x1.values, run.x2.values])
+    rows = (all_rows[:: (len(all_rows) - 1) // coarse] for all_rows in (both, truth))
+    return np.abs(np.subtract(*rows)).max()
+
+
 def table_drive(n):
     """The shaker of :mod:`.table` in this form."""
     c = np.array([-n["stiffness"], -n["damping"], n["bl"]]) / n["mass"]
