@@ -149,21 +149,6 @@ int fmi3DoStep(void *m, double time, double h, bool later, bool *event, bool *en
 }
 
 STATES(fmi3, FMUState, SerializedFMUStateSize, SerializeFMUState, DeserializeFMUState)
-
-/* Importers look all of these up. */
-#define NONE(name) int fmi3##name(void) { return ERROR; }
-NONE(ActivateModelPartition) NONE(CompletedIntegratorStep) NONE(EnterConfigurationMode) NONE(EnterContinuousTimeMode)
-NONE(EnterEventMode) NONE(EnterStepMode) NONE(EvaluateDiscreteStates) NONE(ExitConfigurationMode)
-NONE(GetAdjointDerivative) NONE(GetBinary) NONE(GetBoolean) NONE(GetClock) NONE(GetContinuousStateDerivatives)
-NONE(GetContinuousStates) NONE(GetDirectionalDerivative) NONE(GetEventIndicators) NONE(GetFloat32) NONE(GetInt16)
-NONE(GetInt32) NONE(GetInt64) NONE(GetInt8) NONE(GetIntervalDecimal) NONE(GetIntervalFraction)
-NONE(GetNominalsOfContinuousStates) NONE(GetNumberOfContinuousStates) NONE(GetNumberOfEventIndicators)
-NONE(GetNumberOfVariableDependencies) NONE(GetOutputDerivatives) NONE(GetShiftDecimal) NONE(GetShiftFraction)
-NONE(GetString) NONE(GetUInt16) NONE(GetUInt32) NONE(GetUInt64) NONE(GetUInt8) NONE(GetVariableDependencies)
-NONE(InstantiateModelExchange) NONE(InstantiateScheduledExecution) NONE(SetBinary) NONE(SetBoolean) NONE(SetClock)
-NONE(SetContinuousStates) NONE(SetFloat32) NONE(SetInt16) NONE(SetInt32) NONE(SetInt64) NONE(SetInt8)
-NONE(SetIntervalDecimal) NONE(SetIntervalFraction) NONE(SetShiftDecimal) NONE(SetShiftFraction) NONE(SetString)
-NONE(SetTime) NONE(SetUInt16) NONE(SetUInt32) NONE(SetUInt64) NONE(SetUInt8) NONE(UpdateDiscreteStates)
 #else
 typedef struct { Log2 *log; void *allocate, *release, *finished, *environment; } Callbacks;
 
@@ -193,11 +178,4 @@ int fmi2DoStep(void *instance, double time, double h, int later) {
 int fmi2GetRealStatus(void *m, int kind, double *value) { *value = ((Drive *)m)->last; return kind == 2 ? OK : ERROR; }
 int fmi2GetBooleanStatus(void *m, int kind, int *value) { *value = ((Drive *)m)->ended; return kind == 3 ? OK : ERROR; }
 STATES(fmi2, FMUstate, SerializedFMUstateSize, SerializeFMUstate, DeSerializeFMUstate)
-
-#define NONE(name) int fmi2##name(void) { return ERROR; }
-NONE(CancelStep) NONE(CompletedIntegratorStep) NONE(EnterContinuousTimeMode) NONE(EnterEventMode) NONE(GetBoolean)
-NONE(GetContinuousStates) NONE(GetDerivatives) NONE(GetDirectionalDerivative) NONE(GetEventIndicators) NONE(GetInteger)
-NONE(GetIntegerStatus) NONE(GetNominalsOfContinuousStates) NONE(GetRealOutputDerivatives) NONE(GetStatus) NONE(GetString)
-NONE(GetStringStatus) NONE(NewDiscreteStates) NONE(SetBoolean) NONE(SetContinuousStates) NONE(SetInteger)
-NONE(SetRealInputDerivatives) NONE(SetString) NONE(SetTime)
 #endif

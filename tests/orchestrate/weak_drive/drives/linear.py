@@ -12,6 +12,7 @@ import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
+import fmpy
 import numpy as np
 from fmpy import platform, platform_tuple, sharedLibraryExtension
 from scipy.integrate import solve_ivp
@@ -114,10 +115,16 @@ def attributes(name, reference, causality):
 
 @functools.cache
 def library(fmi):
-    path = Path(tempfile.mkdtemp()) / f"linear{sharedLibraryExtension}"
-    line = ["cc", "-O2", "-shared", "-fPIC", f"-DFMI={fmi}", "-o", path, SOURCE, "-lm"]
-    subprocess.run([*map(str, line)], check=True)
-    atexit.register(shutil.rmtree, path.parent)
+    """The drive compiled; other functions that an importer looks up return an error."""
+    folder = Path(tempfile.mkdtemp())
+    atexit.register(shutil.rmtree, folder)
+    importer = Path(fmpy.__file__).with_name(f"fmi{fmi}.py").read_text()
+    names = sorted({*re.findall(rf"\bfmi{fmi}[A-Z]\w+", importer)})
+    absent = [f"__attribute__((weak)) int {name}(void) {{ return 3; }}\n" for name in names]
+    (folder / "absent.c").write_text("".join(absent))
+    path = folder / f"linear{sharedLibraryExtension}"
+    line = ["cc", "-O2", "-shared", "-fPIC", f"-DFMI={fmi}", "-o", path, SOURCE]
+    subprocess.run([*map(str, line), folder / "absent.c", "-lm"], check=True)
     return path
 
 
