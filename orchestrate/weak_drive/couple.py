@@ -23,7 +23,7 @@ from .controllers import Controller
 from .growth import growth_rate
 from .hysteresis import LOST, UNDECIDED, HysteresisLoop, HysteresisSettings, Jump
 from .master import MAX_STEPS, Scheme
-from .ramp_record import DONE, RampRecord, jump_labels, ramp_jump_variables, time_stays_above
+from .ramp_record import DONE, RampRecord, ramp_jump_variables, time_stays_above
 from .revolutions import COLUMNS
 from .run import MotorJob, motor_run_starter
 from .schedule import Constant, Ramp, Schedule
@@ -118,9 +118,10 @@ class CoupleJob(MotorJob):
     def jump_labels_and_variables(self, table: Table) -> tuple[list[str], dict[str, Variable]]:
         records = [RampRecord(self, table, up) for up in (True, False)]
         each = list(zip(DIRECTIONS, self.jumps_by_direction(table), records, strict=True))
-        first = [(way, jumps[0] if jumps else None, record) for way, jumps, record in each]
-        further = [(way, jump, record) for way, jumps, record in each for jump in jumps[1:]]
-        directions, every, records_of = zip(*first, *further, strict=True)
+        first = [(jumps[0] if jumps else None, record) for _, jumps, record in each]
+        further = [(jump, record) for _, jumps, record in each for jump in jumps[1:]]
+        numbered = [f"{way} {i + 1}" for way, jumps, _ in each for i in range(1, len(jumps))]
+        every, records_of = zip(*first, *further, strict=True)
         shown = [
             record.row_positions_of_jump(*jump[1:]) if jump else [math.nan] * len(DONE)
             for jump, record in zip(every, records_of, strict=True)
@@ -147,7 +148,7 @@ class CoupleJob(MotorJob):
         decided, why = (np.array(parts) for parts in zip(*how, strict=True))
         columns["decided"] = ("jump", decided, {"long_name": "how jump or none was decided"})
         columns["no_jump"] = ("jump", why, {"long_name": "why there is no jump"})
-        return jump_labels(directions), columns
+        return [*DIRECTIONS, *numbered], columns
 
     def explain_decision(self, jump: Jump | None, record: RampRecord) -> tuple[str, str]:
         """Return how a jump or none was decided, and why there is none."""

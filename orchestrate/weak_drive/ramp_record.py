@@ -8,7 +8,6 @@ held before and after it is half done; it begins and ends where a tenth is done,
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -98,16 +97,6 @@ def time_stays_above(time: np.ndarray, Omega: np.ndarray, threshold: float) -> f
     if not len(Omega) or Omega[-1] <= threshold:
         return math.nan
     return float(time[below[-1] + 1]) if below.size else float(time[0])
-
-
-def jump_labels(directions: Sequence[str]) -> list[str]:
-    """Return labels for jumps of some directions: "up", "down", and further ones "up 2"."""
-    counts: Counter[str] = Counter()
-    labels = []
-    for direction in directions:
-        counts[direction] += 1
-        labels.append(direction if counts[direction] == 1 else f"{direction} {counts[direction]}")
-    return labels
 
 
 def ramp_jump_variables(

@@ -7,12 +7,20 @@ import pytest
 
 from orchestrate import couple, couple_all, jump_voltages
 from orchestrate.constants import TURN
+from orchestrate.fmu import find_or_export
 from orchestrate.weak_drive.averaged import folds
 from orchestrate.weak_drive.connection import MOTOR
-from orchestrate.weak_drive.couple import schedule_from_arguments, scheme_from_arguments
-from orchestrate.weak_drive.hysteresis import HysteresisSettings
+from orchestrate.weak_drive.couple import (
+    VERDICT,
+    make_couple_job,
+    schedule_from_arguments,
+    scheme_from_arguments,
+)
+from orchestrate.weak_drive.hysteresis import LOST, UNDECIDED, HysteresisSettings
 from orchestrate.weak_drive.jump_voltages import JumpVoltagesJob
+from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.revolutions import Revolutions
+from orchestrate.weak_drive.schedule import Ramp
 from orchestrate.weak_drive.step_record import LEADING, Record
 
 from .coupled import BEAM, QUICK, system_of
@@ -118,6 +126,18 @@ def test_revolutions_are_the_turns_that_are_new():
     expected = completed(*columns.values())
     assert len(found) > 100 and len({row[2] > 0.0 for row in found}) == 2
     assert [tuple(row) for row in found] == expected
+
+
+def test_the_first_sure_jump_of_a_direction_comes_first():
+    """Of made-up ones over a short run; further ones are numbered."""
+    job = make_couple_job(*QUICK, Ramp(1.5, 1.6, 1e-2, back=False), Scheme(0.2), hold=0.0)
+    table = job.run_all_chunks({model: find_or_export(model).path for model in job.models})
+    ends = {1.50: UNDECIDED, 1.52: LOST, 1.55: LOST}
+    jumps = [(True, (how, low, low + 1e-2, np.nan, np.nan)) for low, how in ends.items()]
+    found = job.dataset({**table, "verdicts": np.array(jumps, VERDICT)})
+    assert found.jump.values.tolist() == ["up", "down", "up 2", "up 3"]
+    assert found.jump_low.values == pytest.approx([1.52, np.nan, 1.55, 1.50], nan_ok=True)
+    assert found.decided.values[[0, 3]].tolist() == ["by held voltages", "undecided"]
 
 
 @pytest.mark.slow

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from orchestrate.weak_drive.ramp_record import RampRecord, jump_labels
+from orchestrate.weak_drive.ramp_record import RampRecord
 from orchestrate.weak_drive.schedule import Ramp
 
 
@@ -28,7 +28,6 @@ def test_where_a_ramp_shows_a_jump():
     assert before == pytest.approx(810.0, abs=15.0)
     assert half == pytest.approx(850.0, abs=15.0) and after == pytest.approx(890.0, abs=15.0)
     assert np.isnan(ramp.row_positions_of_jump(1.26, 1.2601, 1.23, 1.2901)).all()
-    assert jump_labels(["up", "down", "up"]) == ["up", "down", "up 2"]
 
 
 def test_a_ramp_that_is_past_a_jump_before_its_voltage():
