@@ -70,7 +70,7 @@ def checked_links(
     ``units`` has those that the drive does not state, by its names; a name in ``connect`` may say
     its own: ``table_pos[mm]``. A drive that runs ``alone`` has no force on it.
     """
-    if not isinstance(connect, Mapping) or not all(isinstance(v, str) for v in connect.values()):
+    if not all(isinstance(theirs, str) for theirs in connect.values()):
         raise InputError(f"connect = {connect!r}: expected names of theirs by names of ours")
     for name in connect:
         if name not in UNITS:
