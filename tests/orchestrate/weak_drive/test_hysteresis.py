@@ -374,20 +374,6 @@ def test_a_motion_is_held_for_a_time_unless_it_is_left(monkeypatch, later, error
     assert time % 50.0 == 0.0  # without the 20 that it comes in
 
 
-def test_where_a_speed_between_is_sought(monkeypatch):
-    """In the middle, then nearer to the lower voltage."""
-    loop, sought = Scripted(lambda *now: 0.0), []
-
-    def nowhere(low, voltage, high, requires_lifetime):
-        sought.append(voltage)
-        return loop.at(voltage)._replace(speed=np.nan)
-
-    monkeypatch.setattr(loop, "hold_from_low_end", nowhere)
-    points = line((1.5, 1.3, 0.0), (1.5019, 1.31, 0.0))
-    assert not loop.insert_point_between(points, 0) and len(points) == 2
-    assert sought == pytest.approx([1.5 + part * 1.9e-3 for part in (0.5, 0.25, 0.75)])
-
-
 @pytest.mark.parametrize(
     ("unsettled", "away", "comes"),
     [
