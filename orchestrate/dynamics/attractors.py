@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,22 +16,23 @@ from ..model import Structure
 from ..model.arguments import Numbers, Positive, checked_numbers, whole
 from ..model.outcomes import ABSENT, WORDS
 from ..response.labels import Variable, flags, make_dataset, si_state_coordinate, variable
-from ..response.questions import Point, SeriesQuestion, Values, require_delaminated
+from ..response.questions import SeriesQuestion, Values, require_delaminated
 from ..response.signatures import as_given, question
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
 from .clusters import FEATURES
 from .decision import MotionDecider
-from .global_continuation import MatchedAttractors, match_attractors, open_instance_pair
+from .global_continuation import match_attractors, open_instance_pair
+from .settled_motion import Floats, SettledMotion
 from .settling import (
     RUN_LENGTHS,
     AttractorSettings,
+    ReachedMotion,
     SettledResponse,
     SettlingSettings,
     run_until_settled,
 )
 
-Floats = NDArray[np.float64]
 ATTRACTOR = "attractor: periodic first, then by periods, impacts per period, largest gap"
 OF_ATTRACTORS = {
     "multiplicity": "excitation periods after which it repeats; 0: irregular",
@@ -54,10 +55,9 @@ COLUMNS = (*OF_ATTRACTORS, "multiplier", "how", "share", "state")
 def checked_half_widths(name: str, value: ArrayLike | None) -> Numbers | None:
     """Return the user's half width(s) of the box of starts, m, or None; raise unless positive."""
     scale = checked_numbers(name, value)
-    each = scale if isinstance(scale, tuple) else () if scale is None else (scale,)
-    wrong = [width for width in each if width <= 0.0]
-    if wrong:
-        raise InputError(f"{name} = {wrong[0]!r}: expected numbers > 0, m")
+    for width in scale if isinstance(scale, tuple) else (scale,):
+        if width is not None and width <= 0.0:
+            raise InputError(f"{name} = {width!r}: expected numbers > 0, m")
     return scale
 
 
@@ -95,48 +95,62 @@ class AttractorsJob(SeriesQuestion):
         with open_instance_pair(fmus[OSCILLATOR]) as instances:
             if previous is not None:
                 return self.group_starts_into_attractors(instances, previous)
-            rows = []
+            reached = list[ReachedMotion]()
             for index, group in itertools.groupby(items, lambda item: item[0]):
                 decider = MotionDecider(*instances, self.series.points[index], self.settings)
                 starts = self.draw_starts(decider, index)
-                rows += settle_starts(decider, starts[[number for _, number in group]])
-            return settled_table(rows)
+                reached += decider.decide_all(starts[[number for _, number in group]])
+            return settled_table(reached)
 
-    def draw_starts(self, decider: MotionDecider, value_index: int) -> NDArray[np.float64]:
-        """Draw the random starts at one value; without ``scale`` first run from rest for it."""
-        point, seed = decider.point, (self.seed, value_index)
+    def draw_starts(self, decider: MotionDecider, value_index: int) -> Floats:
+        """Draw the random starts at one value: from a box around rest, half of them without
+        ``scale`` from one around the response from rest.
+        """
+        (structure, excitation), seed = decider.point, (self.seed, value_index)
         if self.scale is not None:
             scale = self.scale[value_index] if isinstance(self.scale, tuple) else self.scale
-            return draw_starts_around_rest(self.starts, scale, seed, point.structure)
-        from_rest = run_from_rest(decider.plain, point, self.settings)
-        scale = self.width * (from_rest.max_gap or point.displacement_unit)
-        return draw_starts_around_rest_and_response(self.starts, scale, from_rest, seed, point)
+            return draw_starts_around_rest(self.starts, scale, seed, structure)
+        (settled,) = run_until_settled(decider.plain, decider.point, REST, self.settings)
+        assert isinstance(settled, SettledResponse), "no motion is known"
+        largest_gap = settled.response.x_rel_max or decider.point.displacement_unit
+        states = draw_starts_around_rest(self.starts, self.width * largest_gap, seed, structure)
+        state, frequency = settled.response.end, excitation.frequency
+        start_motion(decider.plain, structure, excitation, state)
+        samples = sample_evenly(decider.plain, 0.0, 8 * excitation.period, 512)
+        # of the largest displacement, and of the largest gap, of the response from rest
+        around, gap = 0.7 * float(np.abs(samples[:, :2]).max()), 3.0 * largest_gap
+        draws = np.random.default_rng([*seed, 1]).uniform(-1.0, 1.0, (self.starts, 4))
+        x1, v1 = state[0] + around * draws[:, 0], state[2] + frequency * around * draws[:, 2]
+        gaps, gap_rates = gap * np.abs(draws[:, 1]), frequency * gap * draws[:, 3]
+        states[1::2] = starts_from_gap(structure, x1, gaps, v1, gap_rates)[1::2]
+        return states
 
     def group_starts_into_attractors(
         self, instances: tuple[Instance, EventInstance | None], table: Table
     ) -> Table:
         """Return the attractors, with columns (1, values, attractors), of the settled starts."""
-        points, order = self.series.points, self.sorting_indices()
+        # sorted, so that neighbours are adjacent
+        points, order = self.series.points, np.argsort(self.series.values, kind="stable")
         starts = {n: np.split(rows, len(points)) for n, rows in table.items()}
         settled = [{name: rows[i] for name, rows in starts.items()} for i in order]
         ordered = [points[i] for i in order]
-        matched = match_attractors(instances, ordered, settled, self.settings)
-        columns = attractor_columns(matched)
+        columns = attractor_columns(*match_attractors(instances, ordered, settled, self.settings))
         return {name: rows[np.newaxis, np.argsort(order)] for name, rows in columns.items()}
 
-    def sorting_indices(self) -> NDArray[np.intp]:
-        """Return the indices that sort the parameter values, so that neighbours are adjacent."""
-        return np.argsort(self.series.values, kind="stable")
-
     def dataset(self, table: Table) -> xr.Dataset:
-        along, shape = self.series.name, (len(self.series.values), self.starts)
-        rows = table["features"].reshape(*shape, len(FEATURES))
+        along, values = self.series.name, np.array(self.series.values)
+        rows = table["features"].reshape(len(values), self.starts, len(FEATURES))
         exists = table["how"][0] != ABSENT
+        first = np.where(exists, values[:, np.newaxis], np.inf).min(axis=0)
+        last = np.where(exists, values[:, np.newaxis], -np.inf).max(axis=0)
+        unit = self.series.coordinates()[along][2]["units"]
+        range_of = f"{along} at which the attractor has been found"
         text = "attractor that the start leads to"
         variables = {
             "number": variable(along, exists.sum(axis=1), "1", "attractors found"),
             **attractor_variables({name: table[name][0] for name in COLUMNS}, (along,), "starts"),
-            **self.existence_range_variables(exists),
+            "first_found": variable("attractor", first, unit, f"smallest {range_of}"),
+            "last_found": variable("attractor", last, unit, f"largest {range_of}"),
             "attractor_of": variable((along, "start"), table["labels"][0], "1", text),
             "features": variable((along, "start", "feature"), rows, "1", SETTLED_TO),
         }
@@ -150,50 +164,38 @@ class AttractorsJob(SeriesQuestion):
         title = f"Coexisting attractors along {along}: {self.structure.label()}"
         return make_dataset(variables, coordinates, title)
 
-    def existence_range_variables(self, exists: NDArray[np.bool_]) -> dict[str, Variable]:
-        values = np.array(self.series.values)[:, np.newaxis]
-        first = np.where(exists, values, np.inf).min(axis=0)
-        last = np.where(exists, values, -np.inf).max(axis=0)
-        unit = self.series.coordinates()[self.series.name][2]["units"]
-        text = f"{self.series.name} at which the attractor has been found"
-        return {
-            "first_found": variable("attractor", first, unit, f"smallest {text}"),
-            "last_found": variable("attractor", last, unit, f"largest {text}"),
-        }
 
-
-SettledRow = tuple[Sequence[float], NDArray[np.float64], int, int]  # features, state, how, periods
-ABSENT_ROW: SettledRow = ([np.nan] * len(FEATURES), np.full(4, np.nan), ABSENT, 0)  # they overlap
-
-
-def settle_starts(decider: MotionDecider, starts: ArrayLike) -> list[SettledRow]:
-    """Run starts until they settle; return of each features, a state at phase 0, how and when."""
-    reached = decider.decide_all(starts)
-    return [(motion.features, state, motion.decided, when) for motion, state, when in reached]
-
-
-def settled_table(rows: Sequence[SettledRow]) -> Table:
+def settled_table(reached: Sequence[ReachedMotion | None]) -> Table:
+    """Return each start's features, a state at phase 0, how and when; None: the masses overlap."""
+    absent = np.full(len(FEATURES), np.nan), np.full(4, np.nan), ABSENT, 0
+    rows = [
+        (each.motion.features, each.state, each.motion.decided, each.periods) if each else absent
+        for each in reached
+    ]
     features, ends, decided, periods = zip(*rows, strict=True)
     columns = {"features": np.array(features, dtype=float), "end": np.array(ends, dtype=float)}
     return {**columns, "decided": np.array(decided, dtype=np.int8), "periods": np.array(periods)}
 
 
-def attractor_columns(matched: MatchedAttractors) -> Table:
+def attractor_columns(
+    motions: Sequence[Sequence[SettledMotion]],
+    numbers: Sequence[Sequence[int]],
+    labels: Sequence[NDArray[np.intp]],
+) -> Table:
     """Return matched attractors as arrays (values, attractors), NaN where one is absent."""
-    shape = len(matched.motions), matched.count
-    columns = {name: np.full(shape, np.nan) for name in (*OF_ATTRACTORS, "multiplier")}
-    how, share = np.full(shape, ABSENT, dtype=np.int8), np.zeros(shape)
-    states = np.full((*shape, 4), np.nan)
-    for i, motions in enumerate(matched.motions):
-        for number, motion in zip(matched.numbers[i], motions, strict=True):
-            features = *motion.features[:3], motion.multiplier
-            for name, feature in zip((*OF_ATTRACTORS, "multiplier"), features, strict=True):
-                columns[name][i, number] = feature
-            how[i, number], states[i, number] = motion.decided, motion.state_of_least_x1
-            if len(matched.labels[i]):
-                share[i, number] = np.mean(matched.labels[i] == number)
-    labels = np.array(matched.labels)
-    return {**columns, "how": how, "share": share, "state": states, "labels": labels}
+    shape = len(motions), 1 + max(map(max, numbers))
+    columns: Table = {name: np.full(shape, np.nan) for name in (*OF_ATTRACTORS, "multiplier")}
+    columns |= {"how": np.full(shape, ABSENT, dtype=np.int8), "share": np.zeros(shape)}
+    columns["state"] = np.full((*shape, 4), np.nan)
+    for i, (numbers_here, labels_here) in enumerate(zip(numbers, labels, strict=True)):
+        for number, motion in zip(numbers_here, motions[i], strict=True):
+            row = dict(zip(OF_ATTRACTORS, motion.features[:3], strict=True))
+            row |= {"multiplier": motion.multiplier, "how": motion.decided}
+            if len(labels_here):
+                row["share"] = np.mean(labels_here == number)
+            for name, value in {**row, "state": motion.state_of_least_x1}.items():
+                columns[name][i, number] = value
+    return {**columns, "labels": np.array(labels)}
 
 
 def attractor_variables(
@@ -212,7 +214,7 @@ def attractor_variables(
 
 def draw_starts_around_rest(
     count: int, scale: float, seed: tuple[int, int], structure: Structure
-) -> NDArray[np.float64]:
+) -> Floats:
     """Draw ``count`` states, shape (count, 4), uniformly from a box around rest, gap >= 0."""
     if not scale <= LARGEST:
         expected = f"expected at most {LARGEST:g} m, by scale or width"
@@ -233,43 +235,6 @@ def starts_from_gap(
         x1, gap_rate = structure.gap_offset - gap, -v1
     x2 = x1 + gap - structure.gap_offset
     return np.column_stack([x1, 0.0 * x2 if structure.wall else x2, v1, v1 + gap_rate])
-
-
-class ResponseFromRest(NamedTuple):
-    """The settled response from rest: a state, its largest displacement and largest gap."""
-
-    state: NDArray[np.float64]  # at phase 0, x1, x2 in m, v1, v2 in m/s
-    max_displacement: float  # of both masses, m
-    max_gap: float  # m
-
-
-def run_from_rest(instance: Instance, point: Point, settings: SettlingSettings) -> ResponseFromRest:
-    """Run from rest until settled; return a state there, largest displacement and gap, m."""
-    (settled,) = run_until_settled(instance, point, REST, settings)
-    assert isinstance(settled, SettledResponse), "no motion is known"
-    response = settled.response
-    start_motion(instance, *point, response.end)
-    span = 8 * point.excitation.period
-    states = sample_evenly(instance, 0.0, span, 512)
-    displacement = float(np.abs(states[:, :2]).max())
-    return ResponseFromRest(np.array(response.end), displacement, response.x_rel_max)
-
-
-def draw_starts_around_rest_and_response(
-    count: int, scale: float, from_rest: ResponseFromRest, seed: tuple[int, int], point: Point
-) -> NDArray[np.float64]:
-    """Draw start states in turn from a box around rest and one around the response from rest."""
-    states = draw_starts_around_rest(count, scale, seed, point.structure)
-    draws = np.random.default_rng([*seed, 1]).uniform(-1.0, 1.0, (count, 4))
-    frequency = point.excitation.frequency
-    # of the largest displacement, and of the largest gap, of the response from rest
-    around = 0.7 * from_rest.max_displacement
-    gap = 3.0 * (from_rest.max_gap or point.displacement_unit)
-    x1 = from_rest.state[0] + around * draws[:, 0]
-    v1 = from_rest.state[2] + frequency * around * draws[:, 2]
-    gaps, gap_rates = gap * np.abs(draws[:, 1]), frequency * gap * draws[:, 3]
-    states[1::2] = starts_from_gap(point.structure, x1, gaps, v1, gap_rates)[1::2]
-    return states
 
 
 @question(AttractorsJob)
@@ -377,9 +342,5 @@ def attractors(
         series = (checked_numbers(*each) for each in along.items())
         several = any(isinstance(each, tuple) and len(each) > 1 for each in series)
         starts = 60 if several else 600
-    return as_given(
-        starts=starts,
-        settings=SettlingSettings.from_settings(
-            settings, transient=transient, settle=settle, samples=samples
-        ),
-    )
+    lengths = {"transient": transient, "settle": settle, "samples": samples}
+    return as_given(starts=starts, settings=SettlingSettings.from_settings(settings, **lengths))

@@ -27,23 +27,22 @@ from ..model.outcomes import ABSENT
 from ..model.ranges import PUSHES
 from ..response import questions
 from ..response.labels import make_dataset, si_state_coordinate, variable
+from ..response.questions import Point, State
 from ..response.signatures import as_given, question
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
 from ..running.provenance import describe_dataset
 from .attractors import (
-    ABSENT_ROW,
     ATTRACTOR,
     COLUMNS,
     attractor_columns,
     attractor_variables,
     attractors,
-    settle_starts,
     settled_table,
 )
 from .decision import MotionDecider
 from .global_continuation import match_attractors, open_instance_pair
-from .settling import RUN_LENGTHS, AttractorSettings, SettlingSettings
+from .settling import RUN_LENGTHS, AttractorSettings, ReachedMotion, SettlingSettings
 
 Floats = NDArray[np.float64]
 AXES = {  # coordinates of a plane of starts: units, long name
@@ -71,48 +70,33 @@ class PlaneAxis(NamedTuple):
         return np.linspace(self.low, self.high, self.number)
 
 
-class Plane(NamedTuple):
-    """Plane of starts: two axes, and the state that the other coordinates are taken from."""
-
-    point: questions.Point
-    x: PlaneAxis
-    y: PlaneAxis
-    at: tuple[float, ...]  # state in whose neighbourhood the plane lies: x1, x2 in m, v1, v2 in m/s
-
-    def states_and_phases(self) -> tuple[Floats, Floats]:
-        """Return all starts row by row: states, shape (y.number * x.number, 4), and phases."""
-        y, x = np.meshgrid(self.y.values(), self.x.values(), indexing="ij")
-        on_axes = {self.x.name: x.ravel(), self.y.name: y.ravel()}
-        structure, at = self.point.structure, self.at
-        if not any(at):
-            at = (*structure.at_rest, 0.0, 0.0)
-        columns = dict(zip(STATE, np.array(at)[:, None] + np.zeros(x.size), strict=True))
-        phase = on_axes.get("phase", np.full(x.size, self.point.excitation.phase))
-        if structure.wall:
-            columns |= {"x2": np.zeros(x.size), "v2": np.zeros(x.size)}
-        if "x_rel" in on_axes:  # from here on, as the difference x2 - x1
-            on_axes["x_rel"] = on_axes["x_rel"] - structure.gap_offset
-        columns |= {name: values for name, values in on_axes.items() if name in STATE}
-        for name, (first, second) in GAPS.items():
-            if name in on_axes:
-                fixed = {second: columns[second]} if structure.wall else {}
-                columns[first], columns[second] = mass_coordinates_from_gap(
-                    {**on_axes, **fixed}, name, columns[first], columns[second]
-                )
-        return np.column_stack([columns[name] for name in STATE]), phase
-
-
-def mass_coordinates_from_gap(
-    known: Mapping[str, Floats], gap_name: str, value1: Floats, value2: Floats
+def starts_of_plane(
+    point: Point, x: PlaneAxis, y: PlaneAxis, at: Sequence[float]
 ) -> tuple[Floats, Floats]:
-    """Return both masses' coordinates from a gap, keeping one mass's value or their mean."""
-    first, second = GAPS[gap_name]
-    if first in known:
-        return value1, value1 + known[gap_name]
-    if second in known:
-        return value2 - known[gap_name], value2
-    middle, half = 0.5 * (value1 + value2), 0.5 * known[gap_name]
-    return middle - half, middle + half
+    """Return the starts of a plane row by row: states, shape (y.number * x.number, 4), and phases.
+
+    ``at`` is the state (m, m/s) that the coordinates are taken from which are not varied.
+    """
+    ys, xs = (values.ravel() for values in np.meshgrid(y.values(), x.values(), indexing="ij"))
+    on_axes, (structure, excitation) = {x.name: xs, y.name: ys}, point
+    if not any(at):
+        at = (*structure.at_rest, 0.0, 0.0)
+    columns = dict(zip(STATE, np.array(at)[:, None] + np.zeros(xs.size), strict=True))
+    if structure.wall:
+        columns |= {"x2": np.zeros(xs.size), "v2": np.zeros(xs.size)}
+    columns |= {name: values for name, values in on_axes.items() if name in STATE}
+    offsets = {"x_rel": structure.gap_offset, "v_rel": 0.0}  # of the gap from x2 - x1
+    for name in on_axes.keys() & GAPS.keys():
+        (first, second), gap = GAPS[name], on_axes[name] - offsets[name]
+        if first in on_axes:
+            columns[second] = columns[first] + gap
+        elif second in on_axes or structure.wall:
+            columns[first] = columns[second] - gap
+        else:  # the mean of both masses is kept
+            middle = 0.5 * (columns[first] + columns[second])
+            columns[first], columns[second] = middle - 0.5 * gap, middle + 0.5 * gap
+    phases = on_axes.get("phase", np.full(xs.size, excitation.phase))
+    return np.column_stack([columns[name] for name in STATE]), phases
 
 
 class BasinJob(questions.Question):
@@ -132,7 +116,7 @@ class BasinJob(questions.Question):
     def __post_init__(self) -> None:
         super().__post_init__()
         questions.require_delaminated(self.structure)
-        states = self.plane().states_and_phases()[0]
+        states, _ = self.starts()
         if self.structure.wall and states[:, 1::2].any():
             raise InputError(
                 "x and y: mass 2 is a wall; expected of x1 and x_rel, v1 and v_rel one"
@@ -142,49 +126,47 @@ class BasinJob(questions.Question):
                 "x and y: the masses overlap at every start; expected some with x2 >= x1"
             )
 
-    def plane(self) -> Plane:
-        return Plane(questions.Point(self.structure, self.excitation), self.x, self.y, self.at)
+    def starts(self) -> tuple[Floats, Floats]:
+        point = Point(self.structure, self.excitation)
+        return starts_of_plane(point, self.x, self.y, self.at)
 
     def count(self) -> int:
         return self.x.number * self.y.number + 1
 
-    def items(self) -> Sequence[tuple[questions.State, float] | None]:
-        states, phases = self.plane().states_and_phases()
+    def items(self) -> Sequence[tuple[State, float] | None]:
+        states, phases = self.starts()
         return [*zip(map(tuple, states.tolist()), phases.tolist(), strict=True), None]
 
     def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
         """Run starts until they settle (overlapping masses: absent), or group them at the end."""
-        point = questions.Point(
-            self.structure, self.excitation.replace(phase=0.0)
-        )  # a start has its own
+        point = Point(self.structure, self.excitation.replace(phase=0.0))  # a start has its own
         with open_instance_pair(fmus[OSCILLATOR]) as instances:
             if previous is not None:
                 return self.group_starts_into_attractors(instances, point, previous)
             decider = MotionDecider(*instances, point, self.settings)
-            rows = [ABSENT_ROW] * len(items)
+            reached: list[ReachedMotion | None] = [None] * len(items)
             states = np.array([state for state, _ in items])
             possible = np.flatnonzero(~questions.is_outside_gap(states, self.structure)).tolist()
             starts = [run_to_phase_zero(decider.plain, point, *items[i]) for i in possible]
-            for i, row in zip(possible, settle_starts(decider, starts), strict=True):
-                rows[i] = row
-            return settled_table(rows)
+            for i, each in zip(possible, decider.decide_all(starts), strict=True):
+                reached[i] = each
+            return settled_table(reached)
 
     def group_starts_into_attractors(
-        self, instances: tuple[Instance, EventInstance | None], point: questions.Point, table: Table
+        self, instances: tuple[Instance, EventInstance | None], point: Point, table: Table
     ) -> Table:
         """Return the attractors, with columns (1, attractors), and the label of each start."""
         there = table["decided"] != ABSENT
         starts = {name: rows[there] for name, rows in table.items()}
         matched = match_attractors(instances, [point], [starts], self.settings, self.known)
-        columns = attractor_columns(matched)
+        columns = attractor_columns(*matched)
         labels = np.full((1, len(there)), -1, dtype=np.int16)
         labels[0, there] = columns["labels"][0]
         return {**columns, "labels": labels}
 
     def dataset(self, table: Table) -> xr.Dataset:
-        plane = self.plane()
         text = "attractor that the start leads to; -1: the masses would overlap"
-        sides = (plane.y, plane.x)
+        sides = (self.y, self.x)
         labels = table["labels"][0].reshape([side.number for side in sides])
         variables = {
             "attractor_of": variable(tuple(side.name for side in sides), labels, "1", text),
@@ -195,15 +177,13 @@ class BasinJob(questions.Question):
             **{side.name: variable(side.name, side.values(), *AXES[side.name]) for side in sides},
             "attractor": variable("attractor", np.arange(count), "1", ATTRACTOR),
             **si_state_coordinate(),
-            "eta": variable((), plane.point.excitation.eta(plane.point.structure), "1", "eta (2)"),
+            "eta": variable((), self.excitation.eta(self.structure), "1", "eta (2)"),
         }
-        title = f"Basins of attraction: {plane.point.structure.label()}"
+        title = f"Basins of attraction: {self.structure.label()}"
         return make_dataset(variables, coordinates, title)
 
 
-def run_to_phase_zero(
-    instance: Instance, point: questions.Point, state: questions.State, phase: float
-) -> questions.State:
+def run_to_phase_zero(instance: Instance, point: Point, state: State, phase: float) -> State:
     left = -phase % TURN
     if left == 0.0:
         return state
@@ -303,19 +283,18 @@ def basin(
     """
     pushes = {"box_acceleration": box_acceleration, "force1": force1, "force2": force2}
     point = questions.checked_point(structure, eta, frequency, amplitude, **pushes)
-    run = SettlingSettings.from_settings(
-        settings, transient=transient, settle=settle, samples=samples
-    )
+    lengths = {"transient": transient, "settle": settle, "samples": samples}
+    run = SettlingSettings.from_settings(settings, **lengths)
     known: KnownAttractors | None = None
     if x is None or y is None:
         known = find_attractors_from_few_starts(point, run, running)
         if x is None and y is None and at is None:
-            at = known.samples.mean(axis=0)
+            at = known.mean
     if hasattr(at, "data_vars"):
         at = mean_attractor_state(at, point.excitation.frequency)  # type: ignore[arg-type]
     sides = (
-        known.default_axis("x_rel") if x is None and known else checked_axis("x", x),
-        known.default_axis("v_rel") if y is None and known else checked_axis("y", y),
+        known.x if x is None and known else checked_axis("x", x),
+        known.y if y is None and known else checked_axis("y", y),
     )
     if sides[0].name == sides[1].name:
         raise InputError(f"x and y: {sides[0].name} twice; expected two coordinates")
@@ -332,12 +311,10 @@ def basin(
 def mean_attractor_state(result: xr.Dataset, frequency: float) -> Floats:
     """Return the mean of the states of a result of ``attractors``, which is at ``frequency``."""
     over = [name for name in result.get("state", xr.DataArray()).dims if name != "coordinate"]
-    if "attractor" not in over or any(
-        result.sizes[name] > 1 for name in over if name != "attractor"
-    ):
-        raise InputError(
-            f"at: {describe_dataset(result)}; expected a result of attractors at one frequency"
-        )
+    several = any(result.sizes[name] > 1 for name in over if name != "attractor")
+    if "attractor" not in over or several:
+        text = "expected a result of attractors at one frequency"
+        raise InputError(f"at: {describe_dataset(result)}; {text}")
     frequency_there = float(np.ravel(result.frequency)[0])
     if not math.isclose(frequency_there, frequency, rel_tol=1e-6):
         text = f"expected those at frequency = {frequency:.6g} rad/s"
@@ -346,37 +323,33 @@ def mean_attractor_state(result: xr.Dataset, frequency: float) -> Floats:
 
 
 class KnownAttractors(NamedTuple):
-    """Attractors found beforehand, from which the default plane of starts is laid out."""
+    """Attractors found beforehand, and the plane of starts that is laid out by them."""
 
-    states: tuple[questions.State, ...]  # a state on each at phase 0
-    samples: Floats  # states of all of them at phase 0
-    gap: float  # largest gap of their motions, m, or the unit of length where that is 0
-    frequency: float  # of the box, rad/s
-
-    def default_axis(self, name: str) -> PlaneAxis:
-        """Return a default axis for gap or gap velocity, twice as wide as the attractors."""
-        rates = np.abs(self.samples[:, 3] - self.samples[:, 2])
-        largest = {"x_rel": self.gap, "v_rel": max(float(rates.max()), self.frequency * self.gap)}
-        high = float(f"{2.0 * largest[name]:.1e}")
-        return PlaneAxis(name, 0.0 if name == "x_rel" else -high, high, COUNT)
+    states: tuple[State, ...]  # a state on each at phase 0
+    mean: Floats  # of all their states at phase 0
+    x: PlaneAxis  # of the gap, twice as wide as the attractors
+    y: PlaneAxis  # of its rate
 
 
 def find_attractors_from_few_starts(
-    point: questions.Point, settings: SettlingSettings, running: Mapping[str, Any]
+    point: Point, settings: SettlingSettings, running: Mapping[str, Any]
 ) -> KnownAttractors:
     structure, excitation = point
-    search: Any = {name: getattr(settings, name) for name in RUN_LENGTHS} | {"settings": settings}
-    search |= {name: running[name] for name in running.keys() & {"fmu", "build_folder"}}
     box = ("frequency", "amplitude", *PUSHES)
-    search |= {name: getattr(excitation, name) for name in box}
+    search: Any = {name: getattr(excitation, name) for name in box} | {"settings": settings}
+    search |= {name: getattr(settings, name) for name in RUN_LENGTHS}
+    search |= {name: running[name] for name in running.keys() & {"fmu", "build_folder"}}
     known = attractors(structure, starts=24, **search, jobs=1, progress=False).isel(frequency=0)
     states, samples = tuple(map(tuple, known.state.values.tolist())), []
     with Instance(make_fmu_finder(running)(OSCILLATOR).path) as instance:
         for state, n in zip(states, known.multiplicity.values, strict=True):
             start_motion(instance, *point, state)
             periods = int(n) or settings.irregular_samples
-            samples.append(
-                sample_stroboscopically(instance, excitation.period, 0, periods)[0].copy()
-            )
+            sampled, _ = sample_stroboscopically(instance, excitation.period, 0, periods)
+            samples.append(sampled.copy())
+    every = np.concatenate(samples)
     gap = float(known.xi_rel_max.max()) * point.displacement_unit or point.displacement_unit
-    return KnownAttractors(states, np.concatenate(samples), gap, excitation.frequency)
+    rate = max(float(np.abs(every[:, 3] - every[:, 2]).max()), excitation.frequency * gap)
+    x, y = (float(f"{2.0 * largest:.1e}") for largest in (gap, rate))
+    axes = PlaneAxis("x_rel", 0.0, x, COUNT), PlaneAxis("v_rel", -y, y, COUNT)
+    return KnownAttractors(states, every.mean(axis=0), *axes)

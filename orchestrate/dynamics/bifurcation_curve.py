@@ -8,7 +8,8 @@ is the level at which the structure first opens.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import contextlib
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -17,24 +18,23 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from .bifurcation_kinds import KINDS, Kind
 from .closed_form import Floats
-from .continuation import ArclengthStepper, NoConvergenceError, Root, leading_index
+from .continuation import NoConvergenceError, Root, leading_index
 from .families import Family, central_difference
 from .orbit_tracer import OrbitPoint
 from .periodic_orbit import CLOSING, PeriodicOrbit
-from .tracer import BranchStep, BranchTracer, ContinuationSettings
+from .tracer import BranchStep, BranchTracer
 from .turning_points import (
     GAP,
     contact_pressure_and_derivatives,
     nearest_miss,
     rate_curvature_and_value,
-    turning_points,
     weakest_force,
 )
 
-REAL_MULTIPLIERS: dict[int, float] = {Kind.FOLD: 1.0, Kind.FLIP: -1.0}
 SMOOTH_KINDS = (Kind.FOLD, Kind.FLIP, Kind.TORUS)
 FOLLOWED = (*SMOOTH_KINDS, Kind.GRAZING, Kind.TOUCHING, Kind.EARLIER_RELEASE)
 OVERLAP = 1e-9  # over a eta^2: a gap, or a force, smaller by this than zero is no rounding
+FREE = -np.inf, np.inf  # limits of an unknown that is no parameter
 
 
 @dataclass
@@ -44,8 +44,8 @@ class BifurcationCurve:
     family: Family  # of two parameters
     kind: int
     node: int  # that grazes, or the segment that touches or is released: its index, else -1
-    # what the kind adds, at the start: the multiplier's angle, or the phase of touching or of the
-    # release
+    # the unknown that the kind adds, at the start: the multiplier's angle, or the phase of touching
+    # or of the release
     extra: Floats
     scale: Floats = field(init=False)
     columns: NDArray[np.complex128] = field(init=False)
@@ -64,7 +64,7 @@ class BifurcationCurve:
             released = point.orbit.sequence.releases
             node = int(np.where(released, np.inf, point.orbit.nodes[:, CLOSING]).argmin())
         elif kind == Kind.TOUCHING:
-            _, node, phase = nearest_miss(point.orbit, turning_points(point.orbit))
+            _, node, phase = nearest_miss(point.orbit)
             extra = np.array([phase])
         elif kind == Kind.EARLIER_RELEASE:
             _, node, phase = weakest_force(point.orbit)
@@ -78,16 +78,6 @@ class BifurcationCurve:
     def accuracy(self) -> float:
         return self.family.accuracy
 
-    @property
-    def first_parameter_index(self) -> int:
-        return self.family.node_unknowns
-
-    def critical_multiplier(self, unknowns: Floats) -> complex:
-        """Return the Floquet multiplier on the unit circle at this bifurcation."""
-        if self.kind == Kind.TORUS:
-            return complex(np.exp(1j * unknowns[-1]))
-        return REAL_MULTIPLIERS[self.kind]
-
     def orbit(self, unknowns: Floats) -> PeriodicOrbit:
         return self.family.orbit(unknowns[: self.family.node_unknowns + 2])
 
@@ -99,8 +89,11 @@ class BifurcationCurve:
             self.rows = rotate_leading_component_to_real(right[-1].conj())
 
     def scaled_orbit_jacobian(self, unknowns: Floats) -> NDArray[np.complex128]:
-        """Return the orbit's scaled Jacobian at the multiplier: singular at the bifurcation."""
-        matrix = self.orbit(unknowns).jacobian(self.critical_multiplier(unknowns))
+        """Return the orbit's scaled Jacobian at the multiplier on the unit circle: singular."""
+        multiplier: complex = 1.0 if self.kind == Kind.FOLD else -1.0
+        if self.kind == Kind.TORUS:
+            multiplier = complex(np.exp(1j * unknowns[-1]))
+        matrix = self.orbit(unknowns).jacobian(multiplier)
         return np.asarray(matrix * self.scale[: self.family.node_unknowns], dtype=complex)
 
     def bifurcation_condition(self, unknowns: Floats) -> Floats:
@@ -117,11 +110,8 @@ class BifurcationCurve:
                 self.orbit(unknowns), np.array([self.node]), unknowns[-1:]
             )
             return np.append(force, rate)
-        size = self.family.node_unknowns
-        bordered = np.zeros((size + 1, size + 1), dtype=complex)
-        bordered[:size, :size] = self.scaled_orbit_jacobian(unknowns)
-        bordered[:size, size], bordered[size, :size] = self.columns, self.rows.conj()
-        defect = np.linalg.solve(bordered, np.eye(size + 1)[-1])[-1]
+        bordered = bordered_orbit_jacobian(self, unknowns)
+        defect = np.linalg.solve(bordered, np.eye(len(bordered))[-1])[-1]
         return np.array([defect.real, defect.imag] if self.kind == Kind.TORUS else [defect.real])
 
     def residual(self, unknowns: Floats) -> Floats:
@@ -130,13 +120,21 @@ class BifurcationCurve:
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
         """Return the residual's Jacobian, the bifurcation condition's rows by differences."""
+        limits = enumerate(self.family.setting.limits, self.family.node_unknowns)
+        return self.jacobian_with(self.bifurcation_condition, unknowns, dict(limits))
+
+    def jacobian_with(
+        self,
+        conditions: Callable[[Floats], Floats],
+        unknowns: Floats,
+        limits: Mapping[int, tuple[float, float]],
+    ) -> Floats:
+        """Return the Jacobian of the orbit's equations and of conditions, these by differences."""
         orbit = self.family.jacobian(unknowns[: self.family.node_unknowns + 2])
-        blank = np.zeros((len(orbit), len(self.extra)))
-        spans = [(-np.inf, np.inf)] * self.family.node_unknowns
-        limits = [*spans, *self.family.setting.limits, *[(-np.inf, np.inf)] * len(self.extra)]
+        blank = np.zeros((len(orbit), len(unknowns) - orbit.shape[1]))
         columns = [
-            central_difference(self.bifurcation_condition, unknowns, i, *limit, step=1e-6 * scale)
-            for i, (limit, scale) in enumerate(zip(limits, self.scale, strict=True))
+            central_difference(conditions, unknowns, i, *limits.get(i, FREE), step=1e-6 * scale)
+            for i, scale in enumerate(self.scale[: len(unknowns)])
         ]
         return np.vstack([np.hstack([orbit, blank]), np.array(columns).T])
 
@@ -150,7 +148,7 @@ class BifurcationCurve:
             return "another impact grazes"
         if (orbit.durations <= 0.0).any():
             return "impacts change their order"
-        if nearest_miss(orbit, turning_points(orbit))[0] < -OVERLAP:
+        if nearest_miss(orbit)[0] < -OVERLAP:
             return "a flight grazes" if self.kind != Kind.TOUCHING else "another flight grazes"
         if weakest_force(orbit)[0] < -OVERLAP:
             earlier = self.kind == Kind.EARLIER_RELEASE
@@ -158,6 +156,15 @@ class BifurcationCurve:
         if self.kind == Kind.TORUS and not 0.0 < unknowns[-1] < np.pi:
             return "a resonance 1:1 or 1:2"
         return ""
+
+
+def bordered_orbit_jacobian(curve: BifurcationCurve, unknowns: Floats) -> NDArray[np.complex128]:
+    """Return the orbit's scaled Jacobian with the curve's bordering vectors: it is regular."""
+    size = curve.family.node_unknowns
+    bordered = np.zeros((size + 1, size + 1), dtype=complex)
+    bordered[:size, :size] = curve.scaled_orbit_jacobian(unknowns)
+    bordered[:size, size], bordered[size, :size] = curve.columns, curve.rows.conj()
+    return bordered
 
 
 def rotate_leading_component_to_real(vector: NDArray[np.complex128]) -> NDArray[np.complex128]:
@@ -169,19 +176,12 @@ def rotate_leading_component_to_real(vector: NDArray[np.complex128]) -> NDArray[
 class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
     """Traces a bifurcation over two parameters by pseudo-arclength continuation."""
 
-    def __init__(
-        self, curve: BifurcationCurve, start: Root, settings: ContinuationSettings
-    ) -> None:
-        # short, as the curve is not known yet
-        first, longest = min(1e-3, settings.max_step), settings.max_step
-        super().__init__(ArclengthStepper(curve, start, first, longest), settings.max_points)
-
     def make_point(self, root: Root) -> Root:
         return root
 
     def first_limited_unknown_and_limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
-        curve = self.stepper.curve
-        return curve.first_parameter_index, curve.family.setting.limits
+        family = self.stepper.curve.family
+        return family.node_unknowns, family.setting.limits
 
     def move_stepper_to(self, point: Root) -> Root:
         self.stepper.root = point
@@ -189,21 +189,18 @@ class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
         return point
 
     def end_reason_and_last_points(self, step: BranchStep[Root]) -> tuple[str, Iterable[Root]]:
-        reason = self.stepper.curve.why_no_motion(step.after.unknowns)
-        return reason, self.bisect_for_last_motion(step) if reason else ()
-
-    def bisect_for_last_motion(self, step: BranchStep[Root]) -> list[Root]:
-        """Bisect a step for its last root that is a possible motion; return [root], or []."""
-        low, high = 0.0, step.length
+        """Return why the curve ends within a step, and the last root that is a possible motion."""
         last: list[Root] = []
-        for _ in range(24):  # its end is known to 1e-7 of the step then
-            middle = 0.5 * (low + high)
-            try:
+        reason = self.stepper.curve.why_no_motion(step.after.unknowns)
+        if not reason:
+            return "", last
+        low, high = 0.0, step.length
+        with contextlib.suppress(NoConvergenceError):
+            for _ in range(24):  # its end is known to 1e-7 of the step then
+                middle = 0.5 * (low + high)
                 root = self.stepper.root_after(middle)
-            except NoConvergenceError:
-                return last
-            if self.stepper.curve.why_no_motion(root.unknowns):
-                high = middle
-            else:
-                low, last = middle, [root]
-        return last
+                if self.stepper.curve.why_no_motion(root.unknowns):
+                    high = middle
+                else:
+                    low, last = middle, [root]
+        return reason, last

@@ -22,30 +22,16 @@ from ..running.options import Running
 from . import branches
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcation_kinds import KINDS, Kind
-from .closed_form import Floats
 from .codimension_two import POINT_KINDS, locate_codimension_two_points
-from .continuation import SOLVER_ERRORS, Root, newton_correct, unit_vector
+from .continuation import SOLVER_ERRORS, ArclengthStepper, Root, newton_correct, unit_vector
 from .families import Family, Setting, require_known_parameters
-from .orbit_records import (
-    branch_dataset,
-    located_table,
-    located_variables,
-    orbit_row,
-    orbit_table,
-    split_located,
-)
+from .orbit_records import branch_dataset, branch_table, located_variables, orbit_row
 from .orbit_tracer import OrbitPoint
 from .orbits import FirstGuess, call_text_from_start, excitation_arguments
-from .tracer import ContinuationSettings
 
 POINT = "codimension_two"
 RESIDUAL = "what is left of both conditions, of the multipliers' polynomial over its largest part"
-KEPT = (
-    "state",
-    "xi",
-    "multipliers",
-    *branches.NODES,
-)  # variables of orbits that those points have, too
+KEPT = ("state", "xi", "multipliers", *branches.NODES)  # of orbits: variables of those points too
 
 
 class BorderJob(Question):
@@ -67,36 +53,34 @@ class BorderJob(Question):
         return call_text_from_start(self, values, bifurcation=kind, **keywords, **more)
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
-        curve, root = solve_start_on_curve(self)
-        settings = ContinuationSettings(self.longest, self.most)
+        curve, start = solve_start_on_curve(self)
+        steppers = (
+            ArclengthStepper.at_start(curve, root, self.longest)
+            for root in (start.reversed(), start)
+        )
         back, forth = (
-            BifurcationTracer(curve, start, settings).trace(start)
-            for start in (root.reversed(), root)
+            BifurcationTracer(stepper, self.most).trace(stepper.root) for stepper in steppers
         )
         roots = [*reversed(back.points[1:]), *forth.points]
         points = locate_codimension_two_points(curve, roots, (back.end, forth.end))
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            rows = [orbit_row_at(instance, curve, root.unknowns, root.residual) for root in roots]
-            at = [orbit_row_at(instance, curve, each.unknowns, each.residual) for each in points]
+            solved = [*roots, *points]
+            rows = [orbit_row(instance, curve.family, s.unknowns, s.residual) for s in solved]
         angles = [root.unknowns[-1] if self.kind == Kind.TORUS else np.nan for root in roots]
-        ends = np.array([back.end, forth.end])
-        more = {"angle": np.array(angles), "ends": ends}
-        return {**orbit_table(rows), **more, **located_table(POINT, at, points)}
+        more = {"angle": np.array(angles), "ends": np.array([back.end, forth.end])}
+        return {**branch_table(rows, POINT, points), **more}
 
     def dataset(self, table: Table) -> xr.Dataset:
         setting, kind = self.setting, KINDS[self.kind]
-        along, located = split_located(table, POINT)
         title = f"{kind} over {' and '.join(setting.over)}: {self.structure.label()}"
-        first, last = map(str, along["ends"])
-        attributes = {"title": title, "kind": kind, "over": list(setting.over)}
-        attributes |= {"first_end": first, "last_end": last}
         text = "angle of the multipliers on the unit circle"
-        data = {"angle": variable("point", along["angle"], "rad", text)}
+        data = {"angle": variable("point", table["angle"], "rad", text)}
         kinds, names = ("what happens as well", POINT_KINDS), {name: name for name in setting.over}
-        data |= located_variables(setting, located, POINT, kinds, names, KEPT)
-        if "residual" in located:
-            data[f"{POINT}_residual"] = variable(POINT, located["residual"], "1", RESIDUAL)
-        return branch_dataset(setting, along, data, attributes)
+        data |= located_variables(setting, table, POINT, kinds, names, KEPT)
+        if (residual := table.get(f"{POINT}_residual")) is not None:
+            data[f"{POINT}_residual"] = variable(POINT, residual, "1", RESIDUAL)
+        attributes = {"title": title, "kind": kind, "over": list(setting.over)}
+        return branch_dataset(setting, table, data, **attributes)
 
 
 def solve_start_on_curve(job: BorderJob) -> tuple[BifurcationCurve, Root]:
@@ -110,18 +94,11 @@ def solve_start_on_curve(job: BorderJob) -> tuple[BifurcationCurve, Root]:
         curve = BifurcationCurve.from_orbit(family, point, job.kind)
         guess = np.append(orbit, curve.extra)
         curve.update_bordering_vectors(guess)
-        second = unit_vector(len(guess), curve.first_parameter_index + 1)
+        second = unit_vector(len(guess), family.node_unknowns + 1)
         return curve, newton_correct(curve, guess, second)
     except SOLVER_ERRORS as reason:
         expected = "expected a branch of this structure"
         raise InputError(f"start: no bifurcation found there ({reason}); {expected}") from None
-
-
-def orbit_row_at(
-    instance: EventInstance, curve: BifurcationCurve, unknowns: Floats, residual: float
-) -> Table:
-    """Return the row of the orbit at a curve's unknowns, checked by a run in the FMU."""
-    return orbit_row(instance, curve.family, unknowns[: curve.family.node_unknowns + 2], residual)
 
 
 @question(BorderJob)
@@ -206,7 +183,11 @@ def border(
             f"over = {names!r}: expected two different names, the first one that of start, "
             f"{start.attrs.get('over')!r}"
         )
-    pairs = checked_limit_pairs(names, limits)
+    try:
+        pairs = tuple(branches.checked_limits(*each) for each in zip(names, limits, strict=True))
+    except NOT_NUMBERS:
+        expected = "expected a lower and an upper one for each parameter"
+        raise InputError(f"limits = {limits!r}: {expected}") from None
     nodes, kind = branches.start_guess_and_kind(start, "bifurcation", bifurcation)
     value = float(start["bifurcation_value"].values[bifurcation])
     excitation = excitation_arguments(eta, frequency, amplitude)
@@ -235,14 +216,6 @@ def passes_bifurcation(curve: xr.Dataset, question: Mapping[str, Any], near: flo
     kind = flag_word(bifurcation.bifurcation_kind)
     reach = near * np.ptp(question["limits"][0])
     return bool(curve.attrs["kind"] == kind and (np.abs(passes) < reach).any())
-
-
-def checked_limit_pairs(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
-    try:
-        return tuple(branches.checked_limits(*each) for each in zip(names, limits, strict=True))
-    except NOT_NUMBERS:
-        expected = "expected a lower and an upper one for each parameter"
-        raise InputError(f"limits = {limits!r}: {expected}") from None
 
 
 def start_value_of_second_parameter(

@@ -17,24 +17,23 @@ from .continuation import (
 )
 from .families import Family
 from .orbit_tracer import OrbitPoint
-from .periodic_orbit import CLOSING, PHASE, ImpactSequence
-from .turning_points import nearest_miss, turning_points
+from .periodic_orbit import AT_OUTER_END, CLOSING, IMPACT, PHASE, ImpactSequence
+from .turning_points import nearest_miss
 
 AWAY = 1e-3  # along the new branch, in unknowns over their scale: where its gap is tested
 
 
 def first_point_of_leaving_branch(kind: int, point: OrbitPoint) -> OrbitPoint:
     """Return the orbit at a bifurcation as a point of the branch that leaves there."""
-    if kind == Kind.FLIP:
-        return double_period(point)
-    if kind == Kind.TOUCHING:
-        return with_touching_impact(point)
-    if kind == Kind.GRAZING:
-        return without_grazing_impact(point)
-    expected = "period doubling or grazing"
-    raise InputError(
-        f"switch: {KINDS[kind]}; no branch of orbits leaves there, expected {expected}"
-    )
+    first_points = {
+        Kind.FLIP: double_period,
+        Kind.TOUCHING: with_touching_impact,
+        Kind.GRAZING: without_grazing_impact,
+    }
+    if kind not in first_points:
+        text = "no branch of orbits leaves there, expected period doubling or grazing"
+        raise InputError(f"switch: {KINDS[kind]}; {text}")
+    return first_points[Kind(kind)](point)
 
 
 def double_period(point: OrbitPoint) -> OrbitPoint:
@@ -47,7 +46,8 @@ def double_period(point: OrbitPoint) -> OrbitPoint:
     nodes = np.vstack([orbit.nodes, second])
     sizes = np.tile(family.scale[: family.node_unknowns], 2) * np.sqrt(2.0)
     scale = np.append(sizes, family.scale[family.node_unknowns :])
-    twice = Family(family.setting, family.sequence.doubled(), scale)
+    doubled = ImpactSequence(2 * family.sequence.periods, family.sequence.kinds * 2)
+    twice = Family(family.setting, doubled, scale)
     tangent = np.concatenate([mode, -mode, np.zeros(len(family.setting.over))])
     unknowns = np.append(nodes.ravel(), point.values)
     tangent = tangent / np.linalg.norm(tangent)
@@ -56,32 +56,32 @@ def double_period(point: OrbitPoint) -> OrbitPoint:
 
 def with_touching_impact(point: OrbitPoint) -> OrbitPoint:
     """Return an orbit with its touching point added as an impact, and the branch's tangent."""
-    orbit = point.orbit
-    _, segment, phase = nearest_miss(orbit, turning_points(orbit))
+    orbit, kinds = point.orbit, point.orbit.sequence.kinds
+    _, segment, phase = nearest_miss(orbit)
     state = orbit.states(np.array([segment]), np.array([phase]))[0]
-    outer = bool(2.0 * (state[1] - state[0]) > orbit.form.limit)
+    kind = IMPACT + AT_OUTER_END * int(2.0 * (state[1] - state[0]) > orbit.form.limit)
     row = [phase, state[0], float(state[2:] @ orbit.form.shares), 0.0]
     node = segment + 1 if orbit.node_count else 0
-    sequence = orbit.sequence.with_impact(node, outer)
     nodes = np.insert(orbit.nodes, node, row, axis=0)
-    first = solve_with_sequence(point, sequence, nodes)
+    first = solve_with_kinds(point, (*kinds[:node], kind, *kinds[node:]), nodes)
     rising = first.root.tangent[4 * node + CLOSING] > 0.0
     return first if rising else first.reversed()
 
 
 def without_grazing_impact(point: OrbitPoint) -> OrbitPoint:
     """Return an orbit without its grazing impact, and the tangent of the branch there."""
-    orbit = point.orbit
+    orbit, kinds = point.orbit, point.orbit.sequence.kinds
     closing = np.where(orbit.sequence.releases, np.inf, orbit.nodes[:, CLOSING])
     node = int(np.abs(closing).argmin())
     nodes = np.delete(orbit.nodes, node, axis=0)
-    first = solve_with_sequence(point, orbit.sequence.without_node(node), nodes)
+    first = solve_with_kinds(point, (*kinds[:node], *kinds[node + 1 :]), nodes)
     ahead = ArclengthStepper(first.family, first.root, AWAY, AWAY).root_after(AWAY)
     return first if OrbitPoint(first.family, ahead).nearest_miss > 0.0 else first.reversed()
 
 
-def solve_with_sequence(point: OrbitPoint, sequence: ImpactSequence, nodes: Floats) -> OrbitPoint:
+def solve_with_kinds(point: OrbitPoint, kinds: tuple[int, ...], nodes: Floats) -> OrbitPoint:
     """Solve for an orbit with another sequence of impacts at a point's parameters."""
+    sequence = ImpactSequence(point.orbit.sequence.periods, kinds)
     family = Family.from_nodes(point.family.setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), point.values)
     normal = unit_vector(len(unknowns), family.node_unknowns)

@@ -29,16 +29,9 @@ from ..running.options import Running
 from ..running.provenance import describe_dataset
 from .bifurcation_kinds import KINDS
 from .branch_switching import first_point_of_leaving_branch
-from .continuation import SOLVER_ERRORS
+from .continuation import SOLVER_ERRORS, ArclengthStepper
 from .families import Setting, require_known_parameters
-from .orbit_records import (
-    branch_dataset,
-    located_table,
-    located_variables,
-    orbit_row,
-    orbit_table,
-    split_located,
-)
+from .orbit_records import branch_dataset, branch_table, located_variables, orbit_row
 from .orbit_search import solve_orbit
 from .orbit_tracer import OrbitPoint, OrbitTracer
 from .orbits import (
@@ -49,16 +42,15 @@ from .orbits import (
     guess_from_result,
     orbit,
 )
-from .tracer import Bifurcation, BranchSegment, ContinuationSettings
+from .tracer import BranchSegment
 
-REPORTED = ("value", "state", "xi", "xi_rel", "xi_rel_max", "multipliers", "residual")
 NODES = ("node_kind", *NODE)
-KEPT = (*REPORTED, *NODES)  # variables of orbits that those at bifurcations have, too
+KEPT = (  # variables of orbits that those at bifurcations have, too
+    *("state", "xi", "xi_rel", "xi_rel_max", "multipliers", "residual"),
+    *NODES,
+)
 BIFURCATION = "bifurcation"
 OF_OMEGA = {"m1", "k1", "omega", "f1"}  # what changes eta at one frequency
-OrbitSegment = BranchSegment[OrbitPoint]
-
-
 OF_SETTING = ("over", "limits", *PUSHES)  # with an excitation
 
 
@@ -80,53 +72,45 @@ class BranchJob(Question):
         return call_text_from_start(self, np.array([self.value]), **keywords, **more)
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
-        guess = self.start.as_guess(self.period)
-        settings = ContinuationSettings(self.longest, self.most)
+        guess, values = self.start.as_guess(self.period), np.array([self.value])
         try:
-            start = OrbitPoint(*solve_orbit(self.setting, guess, np.array([self.value])))
-            both = [start.reversed(), start]
-            starts = (
-                both if self.switch < 0 else [first_point_of_leaving_branch(self.switch, start)]
-            )
+            start = OrbitPoint(*solve_orbit(self.setting, guess, values))
+            if self.switch >= 0:
+                start = first_point_of_leaving_branch(self.switch, start)
         except SOLVER_ERRORS as reason:
             expected = "expected an orbit of this structure"
             raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
-        segments = [OrbitTracer(point, settings).trace(point) for point in starts]
+        forth, back = self.trace(start), BranchSegment([start], end="start")
+        if self.switch < 0:
+            back = self.trace(start.reversed())
+        first = len(back.points) - 1.0
+        points = [*reversed(back.points[1:]), *forth.points]
+        bifurcations = [
+            *(
+                replace(each, position=first - each.position)
+                for each in reversed(back.bifurcations)
+            ),
+            *(replace(each, position=first + each.position) for each in forth.bifurcations),
+        ]
+        solved = [*points, *(each.point for each in bifurcations)]
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            points, bifurcations = join_segments(segments)
-            ends = [segments[0].end if len(segments) > 1 else "start", segments[-1].end]
-            every = [*points, *(each.point for each in bifurcations)]
-            rows = [orbit_row(instance, p.family, p.root.unknowns, p.root.residual) for p in every]
-            along, at = orbit_table(rows[: len(points)]), rows[len(points) :]
-            located = located_table(BIFURCATION, at, bifurcations)
-            return {**along, **located, "ends": np.array(ends)}
+            rows = [orbit_row(instance, p.family, p.root.unknowns, p.root.residual) for p in solved]
+        ends = np.array([back.end, forth.end])
+        return {**branch_table(rows, BIFURCATION, bifurcations), "ends": ends}
+
+    def trace(self, start: OrbitPoint) -> BranchSegment[OrbitPoint]:
+        """Follow the branch from an orbit on, in the direction of its tangent."""
+        stepper = ArclengthStepper.at_start(start.family, start.root, self.longest)
+        return OrbitTracer(stepper, self.most).trace(start)
 
     def dataset(self, table: Table) -> xr.Dataset:
         setting, (name,) = self.setting, self.setting.over
-        along, located = split_located(table, BIFURCATION)
-        periods = along["zero"].shape[1]
+        periods = table["zero"].shape[1]
         count = f"{periods} period{'s' * (periods != 1)}"
         title = f"Branch of orbits of {count} along {name}: {self.structure.label()}"
-        first, last = map(str, along["ends"])
-        attributes = {"title": title, "over": name, "first_end": first, "last_end": last}
         kinds = "kind of bifurcation", KINDS
-        at = located_variables(setting, located, BIFURCATION, kinds, {name: "value"}, KEPT)
-        return branch_dataset(setting, along, at, attributes)
-
-
-def join_segments(
-    segments: list[OrbitSegment],
-) -> tuple[list[OrbitPoint], list[Bifurcation[OrbitPoint]]]:
-    """Join a backward and a forward segment, or take one, to points and bifurcations in order."""
-    forth = segments[-1]
-    if len(segments) == 1:
-        return forth.points, forth.bifurcations
-    back, middle = segments[0], len(segments[0].points) - 1.0
-    bifurcations = [
-        *(replace(each, position=middle - each.position) for each in reversed(back.bifurcations)),
-        *(replace(each, position=middle + each.position) for each in forth.bifurcations),
-    ]
-    return [*reversed(back.points[1:]), *forth.points], bifurcations
+        at = located_variables(setting, table, BIFURCATION, kinds, {name: "value"}, KEPT)
+        return branch_dataset(setting, table, at, title=title, over=name)
 
 
 @question(BranchJob)

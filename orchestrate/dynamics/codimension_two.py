@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .bifurcation_curve import BifurcationCurve
+from .bifurcation_curve import BifurcationCurve, bordered_orbit_jacobian
 from .bifurcation_kinds import Kind, NamedKind
 from .closed_form import Floats
 from .continuation import (
@@ -27,10 +27,9 @@ from .continuation import (
     solve_by_brent,
     solve_linear,
 )
-from .families import central_difference
 from .orbit_tracer import unit_circle_test
 from .periodic_orbit import CLOSING, PeriodicOrbit
-from .turning_points import nearest_miss, turning_points
+from .turning_points import nearest_miss
 
 DEGREE = 4  # of D: as many multipliers as states
 LOCATED = 1e-6  # a located point's test function, at most: what is above is no root of it
@@ -58,10 +57,8 @@ ON_CURVE: dict[int, tuple[PointKind, ...]] = {  # with a test function, by the c
     Kind.FOLD: (PointKind.CUSP, PointKind.FOLD_FLIP, PointKind.RESONANCE_1, PointKind.FOLD_TORUS),
     Kind.FLIP: (PointKind.FOLD_FLIP, PointKind.RESONANCE_2, PointKind.FLIP_TORUS),
     Kind.TORUS: (
-        PointKind.RESONANCE_3,
-        PointKind.RESONANCE_4,
-        PointKind.FOLD_TORUS,
-        PointKind.FLIP_TORUS,
+        *(PointKind.RESONANCE_3, PointKind.RESONANCE_4),
+        *(PointKind.FOLD_TORUS, PointKind.FLIP_TORUS),
     ),
     Kind.GRAZING: (PointKind.GRAZING_FOLD, PointKind.GRAZING_FLIP),
     Kind.TOUCHING: (PointKind.GRAZING_FOLD, PointKind.GRAZING_FLIP),
@@ -118,10 +115,6 @@ class CharacteristicPolynomial:
         quotient, _ = np.polydiv(self.coefficients[::-1], np.array([1.0, -multiplier]))
         return np.asarray(np.roots(quotient), dtype=complex)
 
-    def other_pair_test(self, multiplier: float) -> float:
-        """Return a test function that is 0 where two other multipliers have product 1."""
-        return unit_circle_test(self.other_multipliers(multiplier), pairs=True)
-
 
 def locate_codimension_two_points(
     curve: BifurcationCurve, roots: list[Root], end_reasons: tuple[str, str]
@@ -165,9 +158,8 @@ def locate_points_between(
                 test_function_value(curve, root, kind, polynomial)
                 for root, polynomial in zip((before, after), polynomials, strict=True)
             ]
-            if not (np.isfinite(ends).all() and ends[0] * ends[1] < 0.0):
-                continue
-            if not ends[0] * value(length) < 0.0:  # only rounding: no sign is certain there
+            changes = np.isfinite(ends).all() and ends[0] * ends[1] < 0.0
+            if not (changes and ends[0] * value(length) < 0.0):  # else it is only rounding
                 continue
             position = solve_by_brent(value, 0.0, length, **TOLERANCE)
             root = stepper.root_after(position)
@@ -205,7 +197,8 @@ def test_function_value(
     if kind == PointKind.RESONANCE_2:
         return polynomial.slope(-1.0)
     if kind in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) and curve.kind != Kind.TORUS:
-        return polynomial.other_pair_test(1.0 if kind == PointKind.FOLD_TORUS else -1.0)
+        others = polynomial.other_multipliers(1.0 if kind == PointKind.FOLD_TORUS else -1.0)
+        return unit_circle_test(others, pairs=True)
     fold = kind in (PointKind.FOLD_TORUS, PointKind.GRAZING_FOLD)
     fold = fold or kind == PointKind.FOLD_FLIP and curve.kind == Kind.FLIP
     return polynomial(1.0 if fold else -1.0).real
@@ -216,10 +209,7 @@ def cusp_test(curve: BifurcationCurve, root: Root) -> float:
     # along a fold the motion is orthogonal to what the left null vector makes of the parameters'
     # derivatives: its sign on that line changes at a cusp
     size = curve.family.node_unknowns
-    matrix = curve.scaled_orbit_jacobian(root.unknowns).real
-    bordered = np.zeros((size + 1, size + 1))
-    bordered[:size, :size] = matrix
-    bordered[:size, size], bordered[size, :size] = curve.columns.real, curve.rows.real
+    bordered = bordered_orbit_jacobian(curve, root.unknowns).real
     left = np.linalg.solve(bordered.T, np.eye(size + 1)[-1])[:size]
     derivative = curve.family.jacobian(root.unknowns[: size + 2])[:, size:]
     normal = left @ (derivative * curve.scale[size : size + 2])
@@ -272,21 +262,16 @@ def solve_end_point(
             polynomial = characteristic_polynomial(curve, unknowns)
             at = 1.0 if kind == PointKind.RESONANCE_1 else -1.0
             return np.array([polynomial(at).real, polynomial.slope(at)])
-        return np.append(
-            curve.bifurcation_condition(unknowns), grazing_test(curve, unknowns, reason)
-        )
+        orbit = curve.orbit(unknowns)
+        closing = orbit.nodes[~orbit.sequence.releases, CLOSING]
+        flight = reason == "a flight grazes"
+        grazing = nearest_miss(orbit)[0] if flight else closing[np.abs(closing).argmin()]
+        return np.append(curve.bifurcation_condition(unknowns), grazing)
 
     unknowns = root.unknowns[:size] if resonance else root.unknowns
     scale, first = curve.scale[: len(unknowns)], unknowns.copy()
     for _ in range(20):
-        orbit = curve.family.jacobian(unknowns[:size])
-        blank = np.zeros((len(orbit), len(unknowns) - size))
-        free = (-np.inf, np.inf)
-        rows = [
-            central_difference(conditions, unknowns, i, *free, step=1e-6 * float(scale[i]))
-            for i in range(len(unknowns))
-        ]
-        matrix = np.vstack([np.hstack([orbit, blank]), np.array(rows).T]) * scale
+        matrix = curve.jacobian_with(conditions, unknowns, {}) * scale
         residual = np.append(curve.family.residual(unknowns[:size]), conditions(unknowns))
         step = solve_linear(matrix, residual)
         unknowns = unknowns - scale * step
@@ -299,12 +284,3 @@ def solve_end_point(
                 raise NoConvergenceError(f"no root: the residuals are {orbit_left:.0e}, {left:.0e}")
             return CodimensionTwoPoint(kind, unknowns[:size], position, left)
     raise NoConvergenceError("no root after 20 iterations")
-
-
-def grazing_test(curve: BifurcationCurve, unknowns: Floats, reason: str) -> float:
-    """Return the smallest closing speed, or a flight's smallest gap: 0 at a grazing."""
-    orbit = curve.orbit(unknowns)
-    if reason == "a flight grazes":
-        return nearest_miss(orbit, turning_points(orbit))[0]
-    closing = orbit.nodes[~orbit.sequence.releases, CLOSING]
-    return float(closing[np.abs(closing).argmin()])

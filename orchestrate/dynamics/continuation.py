@@ -139,10 +139,9 @@ def solve_linear(matrix: Floats, right: Floats) -> Floats:
     if not np.isfinite(matrix).all():
         raise np.linalg.LinAlgError("not finite")
     try:
-        solution: Floats = splu(csc_array(matrix)).solve(right)
+        return np.asarray(splu(csc_array(matrix)).solve(right), dtype=float)
     except RuntimeError as error:
         raise np.linalg.LinAlgError(str(error)) from None
-    return solution
 
 
 def unit_tangent(matrix: Floats) -> Floats:
@@ -154,11 +153,8 @@ def unit_tangent(matrix: Floats) -> Floats:
         vector = np.linalg.svd(matrix[:-1])[2][-1]
     tangent: Floats = vector / np.linalg.norm(vector)
     # a tangent orthogonal to the last row has no side of it
-    return (
-        tangent
-        if abs(float(matrix[-1] @ tangent)) > 1e-6
-        else with_positive_leading_component(tangent)
-    )
+    sided = abs(float(matrix[-1] @ tangent)) > 1e-6
+    return tangent if sided else with_positive_leading_component(tangent)
 
 
 def with_positive_leading_component(vector: Floats) -> Floats:
@@ -185,11 +181,15 @@ class ArclengthStepper(Generic[AnyCurve]):
     curve: AnyCurve
     root: Root  # where the stepper is; the next step goes along its tangent
     length: float  # of the next step, in unknowns over their scale
-    # steps allowed
-    max_length: float
+    max_length: float  # steps allowed
     min_length: float = 1e-7
     min_cosine: float = 0.97  # smallest cosine between successive tangents
     tolerance: float = 1e-8  # as newton_correct has it
+
+    @classmethod
+    def at_start(cls, curve: AnyCurve, root: Root, max_length: float) -> ArclengthStepper[AnyCurve]:
+        """Return a stepper whose first step is short, as the curve is not known yet."""
+        return cls(curve, root, min(1e-3, max_length), max_length)
 
     def root_after(self, length: float) -> Root:
         """Return the root at an arclength ahead: predicted on the tangent, then corrected."""
@@ -197,30 +197,14 @@ class ArclengthStepper(Generic[AnyCurve]):
         guess = root.unknowns + length * root.tangent * self.curve.scale
         return newton_correct(self.curve, guess, root.tangent, tolerance=self.tolerance)
 
-    def step(self, accepts: Callable[[Root], bool] = lambda root: True) -> tuple[Root, float]:
-        """Find the next root that ``accepts``; return it and its arclength, and adapt the step."""
-        length = self.length
-        while length >= self.min_length:
-            try:
-                root = self.root_after(length)
-            except NoConvergenceError:
-                length *= 0.35  # of a step without a root
-                continue
-            cosine = float(root.tangent @ self.root.tangent)
-            if cosine >= self.min_cosine and accepts(root):
-                easy = cosine > 0.993 and root.iterations <= 4  # nearly straight
-                self.length = min(self.max_length, length * (1.6 if easy else 1.0))
-                return root, length
-            length *= 0.5  # after a sharp bend
-        raise NoConvergenceError("no step is short enough")
-
-    def step_within(
-        self,
-        first: int,
-        limits: Sequence[tuple[float, float]],
-        accepts: Callable[[Root], bool] = lambda root: True,
+    def step(
+        self, first: int, limits: Sequence[tuple[float, float]], accepts: Callable[[Root], bool]
     ) -> tuple[Root, float, bool]:
-        """Find the next root, at most on a limit; return it, its arclength, whether on a limit."""
+        """Find the next root that ``accepts``, at most on a limit, and adapt the step.
+
+        ``limits`` are those of the unknowns from ``first`` on. Return the root, its arclength, and
+        whether it is on a limit.
+        """
         limit = self.next_limit(first, limits)
         if limit is not None:
             with contextlib.suppress(NoConvergenceError):
@@ -230,12 +214,22 @@ class ArclengthStepper(Generic[AnyCurve]):
                     return root, float(offset @ self.root.tangent), True
             self.length *= 0.5
         low, high = np.transpose(limits)
-
-        def accepts_within(root: Root) -> bool:
+        length = self.length
+        while length >= self.min_length:
+            try:
+                root = self.root_after(length)
+            except NoConvergenceError:
+                length *= 0.35  # of a step without a root
+                continue
+            cosine = float(root.tangent @ self.root.tangent)
             limited = root.unknowns[first : first + len(limits)]
-            return bool(((low <= limited) & (limited <= high)).all()) and accepts(root)
-
-        return *self.step(accepts_within), False
+            inside = bool(((low <= limited) & (limited <= high)).all())
+            if cosine >= self.min_cosine and inside and accepts(root):
+                easy = cosine > 0.993 and root.iterations <= 4  # nearly straight
+                self.length = min(self.max_length, length * (1.6 if easy else 1.0))
+                return root, length, False
+            length *= 0.5  # after a sharp bend
+        raise NoConvergenceError("no step is short enough")
 
     def next_limit(
         self, first: int, limits: Sequence[tuple[float, float]]

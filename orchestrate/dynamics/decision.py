@@ -53,10 +53,10 @@ class MotionDecider:
         settings: SettlingSettings,
     ) -> None:
         self.plain, self.eventful, self.point, self.settings = plain, eventful, point, settings
-        excitation = point.excitation
-        box = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
-        self.system = Setting.fixed(point.structure, (*box, *nonzero_pushes(vars(excitation))))
-        self.values = np.array([excitation.frequency])
+        excitation = vars(point.excitation)
+        box = tuple((name, excitation[name]) for name in ("frequency", "amplitude"))
+        self.system = Setting.fixed(point.structure, (*box, *nonzero_pushes(excitation)))
+        self.values = np.array([point.excitation.frequency])
         self.known: list[SettledMotion] = []
 
     # -- responses --------------------------------------------------------------------------------
@@ -116,16 +116,14 @@ class MotionDecider:
 
     def find_periods_at_other_phase(self, response: Response) -> list[int]:
         """Simulate on, sampled at another phase; return periods after which it may repeat there."""
-        start_motion(self.plain, *self.point, response.end)
-        self.plain.step(0.0, OTHER_PHASE / self.point.excitation.frequency)
-        state = self.plain.get(*STATE)
-        shifted = self.point.excitation.replace(phase=OTHER_PHASE)
-        start_motion(self.plain, self.point.structure, shifted, state)
-        states, gap = sample_stroboscopically(
-            self.plain, self.point.excitation.period, 0, self.settings.irregular_samples
-        )
+        settings, excitation = self.settings, self.point.excitation
+        self.start(self.plain, response.end)
+        self.plain.step(0.0, OTHER_PHASE / excitation.frequency)
+        self.start(self.plain, self.plain.get(*STATE), OTHER_PHASE)
+        samples = settings.irregular_samples
+        states, gap = sample_stroboscopically(self.plain, excitation.period, 0, samples)
         sampled = replace(response, samples=states, x_rel_max=gap)
-        close, nearly = self.settings.converged, self.settings.apart * self.settings.converged
+        close, nearly = settings.converged, settings.apart * settings.converged
         counts = [sampled.find_repetition(tolerance).multiplicity for tolerance in (close, nearly)]
         return [n for n in dict.fromkeys(counts) if n]
 
@@ -141,6 +139,11 @@ class MotionDecider:
         motion = SettledMotion(self.point, decided, states, n, impacts, response.x_rel_max)
         self.known.append(motion)
         return motion
+
+    def start(self, instance: Instance, state: ArrayLike, phase: float = 0.0) -> None:
+        """Start a run in a state at a phase of the box, rad."""
+        excitation = self.point.excitation.replace(phase=phase % TURN)
+        start_motion(instance, self.point.structure, excitation, state)
 
     # -- known motions ----------------------------------------------------------------------------
 
@@ -179,7 +182,7 @@ class MotionDecider:
     def converges_to(self, state: ArrayLike, motion: SettledMotion, n: int) -> bool:
         """Return whether the response from a state, of ``n`` periods so far, comes to an orbit."""
         excitation, periods = self.point.excitation, motion.multiplicity
-        start_motion(self.plain, *self.point, state)
+        self.start(self.plain, state)
         if motion.free_phase > 0.0:
             self.plain.step(0.0, motion.free_phase / excitation.frequency)
         state = self.plain.get(*STATE)
@@ -191,8 +194,7 @@ class MotionDecider:
         turns = max(1, min(turns, self.settings.longest // periods))
         whole = n // math.gcd(n, periods)  # what repeats after n periods is as near again after it
         turns = math.ceil(turns / whole) * whole
-        shifted = excitation.replace(phase=motion.free_phase % TURN)
-        start_motion(self.plain, self.point.structure, shifted, state)
+        self.start(self.plain, state, motion.free_phase)
         self.plain.step(0.0, turns * periods * excitation.period)
         last, after = motion.nearest_state_at_free_phase(self.plain.get(*STATE))
         return last == first and after <= max(0.5 * (1.0 + rate**turns) * before, ROUNDING)
@@ -226,14 +228,14 @@ class MotionDecider:
         instance, frequency = self.eventful, self.point.excitation.frequency
         assert instance is not None
         form, span = self.system.closed_form(self.values), periods * self.point.excitation.period
-        start_motion(instance, *self.point, state)
+        self.start(instance, state)
         times = instance.record_impacts(0.0, span).time
         if not len(times):
             return (ImpactSequence(periods, ()), np.zeros((0, 4))), 0.0
         stretches = np.diff(np.append(times, times[0] + span))
         longest = int(stretches.argmax())
         free_time = float(times[longest] + 0.5 * stretches[longest]) % span
-        start_motion(instance, *self.point, state)
+        self.start(instance, state)
         if free_time > 0.0:
             instance.record_impacts(0.0, free_time)
         impacts = instance.record_impacts(free_time, free_time + span)
@@ -254,13 +256,11 @@ class MotionDecider:
 
     def fmu_stays_on(self, motion: SettledMotion) -> bool:
         """Return whether the FMU, started at the orbit's free phase, is there again a round on."""
-        excitation = self.point.excitation
-        shifted = excitation.replace(phase=motion.free_phase % TURN)
         try:
-            start_motion(self.plain, self.point.structure, shifted, motion.states_at_free_phase[0])
+            self.start(self.plain, motion.states_at_free_phase[0], motion.free_phase)
         except (FmuError, InputError):  # in contact the masses overlap within rounding
             return False
-        self.plain.step(0.0, motion.multiplicity * excitation.period)
+        self.plain.step(0.0, motion.multiplicity * self.point.excitation.period)
         return motion.nearest_state_at_free_phase(self.plain.get(*STATE))[1] < self.settings.same
 
     def repeats_in_fmu(self, motion: SettledMotion) -> bool:
@@ -271,7 +271,7 @@ class MotionDecider:
         free_time = motion.free_phase / self.point.excitation.frequency
         end = free_time + motion.multiplicity * self.point.excitation.period
         try:
-            start_motion(instance, *self.point, motion.states[0])
+            self.start(instance, motion.states[0])
         except (FmuError, InputError):  # in contact the masses overlap within rounding
             return False
         if free_time > 0.0:
@@ -279,11 +279,8 @@ class MotionDecider:
         first = nearest(instance.read(*STATE))[0]
         impacts = len(instance.record_impacts(free_time, end).time)
         last, away = nearest(instance.read(*STATE))
-        return (
-            impacts == orbit.sequence.impact_count
-            and last == first
-            and away < self.settings.returns
-        )
+        has_impacts = impacts == orbit.sequence.impact_count
+        return has_impacts and last == first and away < self.settings.returns
 
 
 def reduce_to_least_period(orbit: PeriodicOrbit) -> PeriodicOrbit:
@@ -291,10 +288,9 @@ def reduce_to_least_period(orbit: PeriodicOrbit) -> PeriodicOrbit:
     periods, least = orbit.sequence.periods, least_periods(orbit)
     if least == periods:
         return orbit
-    nodes, first = rotate_to_phase_zero(orbit.nodes, periods)
+    sequence, nodes = rotate_to_phase_zero(orbit.sequence, orbit.nodes)
     count = len(nodes) * least // periods
-    kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)[:count]
-    return PeriodicOrbit(ImpactSequence(least, tuple(kinds.tolist())), orbit.form, nodes[:count])
+    return PeriodicOrbit(ImpactSequence(least, sequence.kinds[:count]), orbit.form, nodes[:count])
 
 
 def phase_far_from_impacts(orbit: PeriodicOrbit) -> float:
@@ -312,12 +308,11 @@ def count_impacts_starting_in_pause(
     """Count a response's impacts over some periods, from its longest time without impacts on."""
     start_motion(instance, *point, state)
     width = point.excitation.period / PIECES
-    counts: list[int] = []
+    counts = [0]
     for piece in range(periods * PIECES):
         instance.step(piece * width, (piece + 1) * width)
         counts += instance.get("impact_count")
-    each = np.diff([0, *counts])
-    middle = middle_of_longest_run(each == 0)
+    middle = middle_of_longest_run(np.diff(counts) == 0)
     start_motion(instance, *point, state)
     first = (middle + 0.5) * width
     instance.step(0.0, first)

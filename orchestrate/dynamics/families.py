@@ -17,7 +17,6 @@ from ..response.questions import QUANTITIES, Point, make_point
 from .closed_form import ClosedForm, Floats
 from .periodic_orbit import POSITION, ImpactSequence, PeriodicOrbit
 
-SPREAD = (0.999, 1.001)  # of a parameter that does not vary: only its scale matters
 RESIDUAL = 1e-10  # of the motion's size: what a root may leave of the equations
 
 
@@ -35,21 +34,13 @@ class Setting:
     def fixed(cls, structure: Structure, excitation: tuple[tuple[str, float], ...]) -> Setting:
         """Return a setting for a single orbit, in which parameters do not really vary."""
         name, value = excitation[0]
-        limits = ((value * SPREAD[0], value * SPREAD[1]),)
-        return cls(structure, excitation, (name,), limits)
+        limits = (value * 0.999, value * 1.001)  # only the parameter's scale matters
+        return cls(structure, excitation, (name,), (limits,))
 
     def point(self, values: Floats) -> Point:
         """Return structure and excitation at values of the parameters that vary."""
         varied = zip(self.over, map(float, values), strict=True)
         return make_point(self.structure, {**dict(self.excitation), **dict(varied)})
-
-    def orbit_call_text(self, values: Floats, period: int, guess: str) -> str:
-        """Return Python source of the call of ``orbit`` at values of these parameters."""
-        point, arguments = self.point(values), dict(self.excitation)
-        arguments.update(zip(self.over, map(float, values), strict=True))
-        shown = {name: arguments[name] for name in QUANTITIES if name in arguments}
-        parts = [f"{name}={value!r}" for name, value in {**shown, "period": period}.items()]
-        return f"orbit({', '.join([repr(point.structure), *parts, f'guess={guess}'])})"
 
     def closed_form(self, values: Floats) -> ClosedForm:
         return cached_closed_form(self, np.asarray(values, dtype=float).tobytes())

@@ -1,4 +1,4 @@
-"""Match attractors along a parameter by global continuation from random starts (Datseris 2023).
+"""Match attractors along a parameter by global continuation from random starts.
 
 Global continuation as of Datseris, Rossi and Wagemakers, Chaos 33, 073151 (2023): states on the
 attractors of one value are further starts at its neighbours, so that an attractor is found as far
@@ -55,10 +55,9 @@ class AttractorsAtValue:
         self.labels = np.full(len(ends), -1, dtype=np.intp)
         index_of: dict[bytes, int] = {}
         for i in np.flatnonzero(decided != IRREGULAR):
-            row = features[i]
-            key = row.tobytes()
+            key = features[i].tobytes()
             if key not in index_of:
-                motion = self.reconstruct_motion(row, ends[i], int(decided[i]))
+                motion = self.reconstruct_motion(features[i], ends[i], int(decided[i]))
                 index_of[key] = self.find_or_add(motion)
             self.labels[i] = index_of[key]
         irregular = np.flatnonzero(decided == IRREGULAR)
@@ -67,11 +66,11 @@ class AttractorsAtValue:
         groups = irregular_clusters(features[irregular], settings)
         for group in range(int(groups.max(initial=-1)) + 1):
             members = irregular[groups == group]
-            self.motions.append(
-                self.median_irregular_motion(
-                    features[members], ends[members[0]], irregular_or_undecided
-                )
-            )
+            _, impacts, xi_rel_max = np.median(features[members, :3], axis=0)
+            point, state = self.decider.point, ends[members[:1]]
+            gap = xi_rel_max * point.displacement_unit
+            motion = SettledMotion(point, irregular_or_undecided, state, 0, float(impacts), gap)
+            self.motions.append(motion)
             self.labels[members] = len(self.motions) - 1
 
     def reconstruct_motion(self, features: Floats, state: Floats, decided: int) -> SettledMotion:
@@ -82,21 +81,12 @@ class AttractorsAtValue:
             known = decider.find_stable_motion_near(state, n)
         if known is None:
             start_motion(decider.plain, *decider.point, state)
-            states, _ = sample_stroboscopically(
-                decider.plain, decider.point.excitation.period, 0, n
-            )
-            gap = float(features[2]) * decider.point.displacement_unit
-            known = SettledMotion(decider.point, decided, states.copy(), n, float(features[1]), gap)
+            point, impacts = decider.point, float(features[1])
+            states, _ = sample_stroboscopically(decider.plain, point.excitation.period, 0, n)
+            gap = float(features[2]) * point.displacement_unit
+            known = SettledMotion(point, decided, states.copy(), n, impacts, gap)
             decider.known.append(known)
         return known
-
-    def median_irregular_motion(self, rows: Floats, state: Floats, decided: int) -> SettledMotion:
-        """Return an irregular motion with the medians of rows of features; its state is given."""
-        _, impacts, gap = np.median(rows[:, :3], axis=0)
-        length = self.decider.point.displacement_unit
-        return SettledMotion(
-            self.decider.point, decided, state[np.newaxis], 0, float(impacts), gap * length
-        )
 
     def find_or_add(self, motion: SettledMotion) -> int:
         """Return a motion's index here, of irregular ones by the nearest gap; append a new one."""
@@ -112,14 +102,11 @@ class AttractorsAtValue:
 
     def continue_from_neighbour(self, motion: SettledMotion) -> tuple[int, int]:
         """Continue a neighbour's attractor here; return its index here, and how."""
-        state = self.decider.point.states_from_faces(
-            motion.point.faces_from_states(motion.states[0])
-        )
-        reached = self.decider.decide(state).motion
-        if motion.orbit is not None and may_be_different_branches(
-            motion, reached, self.decider.settings.neighbour
-        ):
-            continued = self.decider.continue_orbit(motion)
+        decider, faces = self.decider, motion.point.faces_from_states(motion.states[0])
+        reached = decider.decide(decider.point.states_from_faces(faces)).motion
+        leads_away = may_be_different_branches(motion, reached, decider.settings.neighbour)
+        if motion.orbit is not None and leads_away:
+            continued = decider.continue_orbit(motion)
             if continued is not None:
                 return self.find_or_add(continued), BY_NEWTON
         return self.find_or_add(reached), BY_SIMULATION
@@ -137,29 +124,18 @@ def may_be_different_branches(motion: SettledMotion, other: SettledMotion, dista
     return other.nearest_state(state)[1] > distance
 
 
-@dataclass(frozen=True)
-class MatchedAttractors:
-    """Attractors at all values of a parameter; the same attractor has one number everywhere."""
-
-    motions: Sequence[Sequence[SettledMotion]]  # of each value
-    numbers: Sequence[Sequence[int]]  # of these, along the parameter
-    labels: Sequence[NDArray[np.intp]]  # number of the attractor that each random start leads to
-
-    @property
-    def count(self) -> int:
-        return 1 + max(max(row) for row in self.numbers)
-
-
 def match_attractors(
     instances: tuple[Instance, EventInstance | None],
     points: Sequence[Point],
     starts: Sequence[Table],
     settings: SettlingSettings,
     seeds: Sequence[Sequence[float]] = (),
-) -> MatchedAttractors:
+) -> tuple[list[list[SettledMotion]], list[list[int]], list[NDArray[np.intp]]]:
     """Group settled starts at all values, continue the attractors to neighbours, number them.
 
     ``seeds`` are further states at phase 0 of the first value whose attractors are to be found.
+    Return of each value the attractors, their numbers along the parameter, and the number of that
+    to which each random start leads.
     """
     values = [AttractorsAtValue(MotionDecider(*instances, point, settings)) for point in points]
     for value, starts_there in zip(values, starts, strict=True):
@@ -169,8 +145,8 @@ def match_attractors(
     links = continue_to_neighbours(values)
     numbers = number_attractors(values, links, settings.neighbour)
     pairs = zip(values, numbers, strict=True)
-    labels = [np.array([row[i] for i in value.labels], dtype=np.intp) for value, row in pairs]
-    return MatchedAttractors([value.motions for value in values], numbers, labels)
+    labels = [np.array(row, dtype=np.intp)[value.labels] for value, row in pairs]
+    return [value.motions for value in values], numbers, labels
 
 
 Links = dict[tuple[int, int, int], tuple[int, int]]  # value, attractor, neighbour: where, how
@@ -216,16 +192,16 @@ def matching_pairs(
     j = i + 1
     forth = [links[i, a, j] for a in range(len(value.motions))]
     back = [links[j, b, i] for b in range(len(following.motions))]
+    ways = [(a, b, how, value.motions[a], following.motions[b]) for a, (b, how) in enumerate(forth)]
+    ways += [(a, b, how, following.motions[b], value.motions[a]) for b, (a, how) in enumerate(back)]
     candidates: list[tuple[int, int, int]] = []
-    for a, (b, how) in enumerate(forth):
-        mutual = back[b][0] == a
-        alike = not may_be_different_branches(value.motions[a], following.motions[b], distance)
-        if mutual or how == BY_NEWTON or alike:
-            candidates.append((0 if mutual else 1 if how == BY_NEWTON else 2, a, b))
-    for b, (a, how) in enumerate(back):
-        alike = not may_be_different_branches(following.motions[b], value.motions[a], distance)
-        if how == BY_NEWTON or alike:
-            candidates.append((1 if how == BY_NEWTON else 2, a, b))
+    for a, b, how, begun, reached in ways:
+        if forth[a][0] == b and back[b][0] == a:
+            candidates.append((0, a, b))
+        elif how == BY_NEWTON:
+            candidates.append((1, a, b))
+        elif not may_be_different_branches(begun, reached, distance):
+            candidates.append((2, a, b))
     pairs: list[tuple[int, int]] = []
     for _, a, b in sorted(candidates):
         if all(a != paired_a and b != paired_b for paired_a, paired_b in pairs):

@@ -45,7 +45,30 @@ class ImpactStatisticsJob(ImpactsQuestion):
     chunk_size: ClassVar[int] = 40
 
     def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
-        numbers = response_statistics(impacts, item, self.periods)
+        structure, excitation = item.point
+        span, periods, closing = (
+            period_in_tau(excitation.eta(structure)),
+            self.periods,
+            impacts.closing,
+        )
+        exponent = largest_exponent(impacts, periods, item.point)
+        which = np.minimum((impacts.time / span).astype(int), periods - 1)
+        each = np.bincount(which, minlength=periods)
+        distances, closing = np.diff(impacts.time) / span, impacts.closing
+        numbers = {
+            "impacts": len(impacts.time) / periods,
+            "fewest": float(each.min()),
+            "most": float(each.max()),
+            "contacts": impacts.sticks.sum() / periods,
+            "contact_share": contact_time(impacts, item, periods * span) / (periods * span),
+            "closing_max": closing.max() if len(closing) else math.nan,
+            "closing_min": closing.min() if len(closing) else math.nan,
+            "closing_sum": closing.sum() / periods,
+            "distance_min": distances.min() if len(distances) else math.nan,
+            "distance_max": distances.max() if len(distances) else math.nan,
+            "exponent": exponent.value,
+            "standard_error": exponent.error,
+        }
         return [numbers[name] for name in FIELDS]
 
     def dataset(self, table: Table) -> xr.Dataset:
@@ -53,30 +76,6 @@ class ImpactStatisticsJob(ImpactsQuestion):
         variables = column_variables(along, FIELDS, table["rows"].T)
         title = f"Responses along {along}, impact by impact: {self.structure.label()}"
         return make_dataset(variables, self.series.coordinates(), title)
-
-
-def response_statistics(impacts: Impacts, item: FollowedResponse, periods: int) -> dict[str, float]:
-    """Return the numbers of ``FIELDS`` that a response's non-dimensional impacts give."""
-    structure, excitation = item.point
-    span = period_in_tau(excitation.eta(structure))
-    exponent = largest_exponent(impacts, periods, item.point)
-    which = np.minimum((impacts.time / span).astype(int), periods - 1)
-    each = np.bincount(which, minlength=periods)
-    distances, closing = np.diff(impacts.time) / span, impacts.closing
-    return {
-        "impacts": len(impacts.time) / periods,
-        "fewest": float(each.min()),
-        "most": float(each.max()),
-        "contacts": impacts.sticks.sum() / periods,
-        "contact_share": contact_time(impacts, item, periods * span) / (periods * span),
-        "closing_max": closing.max() if len(closing) else math.nan,
-        "closing_min": closing.min() if len(closing) else math.nan,
-        "closing_sum": closing.sum() / periods,
-        "distance_min": distances.min() if len(distances) else math.nan,
-        "distance_max": distances.max() if len(distances) else math.nan,
-        "exponent": exponent.value,
-        "standard_error": exponent.error,
-    }
 
 
 def contact_time(impacts: Impacts, item: FollowedResponse, end: float) -> float:

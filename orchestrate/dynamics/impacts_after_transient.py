@@ -20,9 +20,7 @@ class FollowedResponse(NamedTuple):
 
     point: Point
     start: State  # zeros mean rest, with a preload too, until the FMU has begun there
-    # whether the masses are in permanent contact where the periods followed begin, and where they
-    # end
-    touching: tuple[bool, bool] = (False, False)
+    touching: tuple[bool, bool] = (False, False)  # at begin and end of the periods followed
 
 
 class ImpactsQuestion(StartedSeriesQuestion, ABC):
@@ -33,13 +31,13 @@ class ImpactsQuestion(StartedSeriesQuestion, ABC):
     def items(self) -> Sequence[FollowedResponse]:
         points = self.series.points
         starts = np.broadcast_to(np.reshape(self.start, (-1, 4)), (len(points), 4)).tolist()
-        return [FollowedResponse(*each) for each in zip(points, map(tuple, starts), strict=True)]
+        return list(map(FollowedResponse, points, map(tuple, starts)))
 
     def work(self, fmus: Fmus, items: Sequence[FollowedResponse], previous: Table | None) -> Table:
         rows = []
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             for item in items:
-                start = state_after_transient(plain, item, self.transient)
+                start = state_after_transient(plain, *item[:2], self.transient)
                 start_motion(eventful, *item.point, start)
                 (first,), state = eventful.get("in_contact"), tuple(eventful.get(*STATE))
                 impacts = simulate_nondimensional_impacts(eventful, item.point, start, self.periods)
@@ -52,12 +50,12 @@ class ImpactsQuestion(StartedSeriesQuestion, ABC):
         """Return the numbers that one response's impacts give; subclasses choose them."""
 
 
-def state_after_transient(instance: Instance, item: FollowedResponse, transient: int) -> State:
+def state_after_transient(instance: Instance, point: Point, start: State, transient: int) -> State:
     """Run a response from its start for some periods; return its state at phase 0."""
     if not transient:
-        return item.start
-    start_motion(instance, *item.point, item.start)
-    instance.step(0.0, transient * item.point.excitation.period)
+        return start
+    start_motion(instance, *point, start)
+    instance.step(0.0, transient * point.excitation.period)
     return tuple(instance.get(*STATE))
 
 
@@ -66,6 +64,5 @@ def simulate_nondimensional_impacts(
 ) -> Impacts:
     """Run from a state at phase 0 for some periods; return the impacts in the paper's units."""
     start_motion(instance, *point, start)
-    return nondimensional_impacts(
-        instance.record_impacts(0.0, periods * point.excitation.period), point
-    )
+    impacts = instance.record_impacts(0.0, periods * point.excitation.period)
+    return nondimensional_impacts(impacts, point)

@@ -30,6 +30,7 @@ from .lyapunov_spectrum import (
     bonded_spectrum,
     kaplan_yorke_dimension,
     lyapunov_spectrum,
+    unknown_spectrum,
 )
 from .variational import exponent_library, library_arguments, period_in_tau
 
@@ -37,6 +38,7 @@ PERIODIC, NEUTRAL, CHAOTIC = -1, 0, 1
 WORDS = {PERIODIC: "periodic", NEUTRAL: "neutral", CHAOTIC: "chaotic"}
 LARGEST, SAYS = "largest Lyapunov exponent", "what the exponent says of the response"
 ORDER = "exponent's place, the largest first"
+DIMENSION = "Kaplan-Yorke dimension of the attractor in the stroboscopic section"
 BLOCKS, BATCHES, SIGMAS, WANDER = 40, 8, 3.0, 10.0  # defaults of the parameters of these names
 Floats = NDArray[np.float64]
 
@@ -59,10 +61,10 @@ def exponent_from_impacts(
     """Return the largest exponent by non-dimensional impacts up to ``end``; NaN if too few."""
     if len(impacts.time) < min_impacts(batches):
         return Exponent(math.nan, math.nan)
-    arguments, result = library_arguments(impacts, end, point), np.empty(2)
-    addresses = arguments.memory.ctypes.data, result.ctypes.data
-    exponent_library().largest_exponent(*arguments.span, blocks, batches, *addresses)
-    return Exponent(float(result[0]), float(result[1]))
+    *arguments, memory = library_arguments(impacts, end, point)
+    result, averaging = np.empty(2), (blocks, batches)
+    exponent_library().largest_exponent(*arguments, *averaging, memory.ctypes, result.ctypes)
+    return Exponent(*result.tolist())
 
 
 def largest_exponent(
@@ -83,14 +85,12 @@ def exact_exponent_without_impacts(point: Point) -> Exponent | None:
         return None
     if structure.wall and mode != FREE:  # nothing moves
         return Exponent(-math.inf, math.nan)
-    moving = range(2 - structure.wall) if mode == FREE else (2,)
-    return Exponent(-min(decay_rate(form.damping[i], form.stiffness[i]) for i in moving), 0.0)
-
-
-def decay_rate(damping: float, stiffness: float) -> float:
-    """Return the decay rate of a damped oscillator's free motion (overdamped: the slower rate)."""
-    excess = stiffness - damping**2
-    return damping if excess >= 0.0 else stiffness / (damping + math.sqrt(-excess))
+    rates = []  # of decay, of those that move; of overdamped ones the slower rate
+    for i in range(2 - structure.wall) if mode == FREE else (2,):
+        damping, stiffness = form.damping[i], form.stiffness[i]
+        root = math.sqrt(max(damping**2 - stiffness, 0.0))
+        rates.append(stiffness / (damping + root) if root else damping)
+    return Exponent(-min(rates), 0.0)
 
 
 def exponent_floors(etas: Iterable[float], periods: int, wander: float = WANDER) -> Floats:
@@ -116,43 +116,27 @@ class LyapunovJob(ImpactsQuestion):
     chunk_size: ClassVar[int] = 5
 
     def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
-        rate = len(impacts.time) / self.periods
-        if not self.spectrum:
-            return [*self.exponent(impacts, item), rate]
-        spectrum = self.exponents_and_errors(impacts, item)
-        largest = spectrum[::STATES][:2]  # the largest exponent, and its error
-        if not len(impacts.time):
-            largest = np.array(self.exponent(impacts, item))
-        return [*largest, rate, *spectrum]
-
-    def exponents_and_errors(self, impacts: Impacts, item: FollowedResponse) -> NDArray[np.float64]:
-        """Return four exponents, then their errors; NaN if equal masses never separate."""
-        structure = item.point.structure
-        if len(impacts.time):
-            self.require_enough_impacts(impacts, item)
-            end = self.periods * period_in_tau(item.point.excitation.eta(structure))
-            spectrum = lyapunov_spectrum(impacts, end, item.point, self.blocks, self.batches)
-        elif structure.bonded:
-            spectrum = bonded_spectrum(structure)
-        else:
-            return np.full(2 * STATES, math.nan)
-        return np.concatenate(spectrum)
-
-    def exponent(self, impacts: Impacts, item: FollowedResponse) -> Exponent:
-        """Return the largest exponent; raise where there are too few impacts for an error."""
-        if len(impacts.time) or exact_exponent_without_impacts(item.point) is None:
-            self.require_enough_impacts(impacts, item)
-        return largest_exponent(impacts, self.periods, item.point, self.blocks, self.batches)
-
-    def require_enough_impacts(self, impacts: Impacts, item: FollowedResponse) -> None:
-        count, needed = len(impacts.time), min_impacts(self.batches)
-        if count < needed:
+        """Return the largest exponent, its error, impacts a period, and all four with errors."""
+        point, count = item.point, len(impacts.time)
+        eta, needed = point.excitation.eta(point.structure), min_impacts(self.batches)
+        exact = None if count else exact_exponent_without_impacts(point)
+        if exact is None and count < needed:
             enough = f" (periods >= {-(-needed * self.periods // count)})" if count else ""
             raise InputError(
-                f"periods = {self.periods}: {count} impacts at "
-                f"eta = {item.point.excitation.eta(item.point.structure):g}; "
+                f"periods = {self.periods}: {count} impacts at eta = {eta:g}; "
                 f"expected periods with at least {needed} impacts{enough}"
             )
+        rate, measured = count / self.periods, (self.periods * period_in_tau(eta), point)
+        averaging = self.blocks, self.batches
+        if not self.spectrum:
+            return [*(exact or exponent_from_impacts(impacts, *measured, *averaging)), rate]
+        spectrum = unknown_spectrum()  # of equal masses that never separate
+        if count:
+            spectrum = lyapunov_spectrum(impacts, *measured, *averaging)
+        elif point.structure.bonded:
+            spectrum = bonded_spectrum(point.structure)
+        largest = exact or (spectrum.exponents[0], spectrum.errors[0])
+        return [*largest, rate, *spectrum.exponents, *spectrum.errors]
 
     def dataset(self, table: Table) -> xr.Dataset:
         along, (exponent, error, impacts) = self.series.name, table["rows"].T[:3]
@@ -166,22 +150,15 @@ class LyapunovJob(ImpactsQuestion):
         }
         coordinates = self.series.coordinates()
         if self.spectrum:
-            variables |= spectrum_variables(along, table["rows"][:, 3:])
+            exponents, errors = np.split(table["rows"][:, 3:], 2, axis=1)
+            dimensions = [kaplan_yorke_dimension(row) for row in exponents]
+            text, dims = "Lyapunov exponents, per tau", (along, "order")
+            variables["exponents"] = variable(dims, exponents, "1", text)
+            variables["exponent_errors"] = variable(dims, errors, "1", "their standard errors")
+            variables["kaplan_yorke_dimension"] = variable(along, dimensions, "1", DIMENSION)
             coordinates["order"] = variable("order", np.arange(1, STATES + 1), "1", ORDER)
         title = f"{LARGEST} along {along}: {self.structure.label()}"
         return make_dataset(variables, coordinates, title)
-
-
-def spectrum_variables(along: str, rows: NDArray[np.float64]) -> dict[str, Variable]:
-    """Return variables of rows of four exponents and their errors, with the dimension."""
-    exponents, errors = rows[:, :STATES], rows[:, STATES:]
-    dimensions = [kaplan_yorke_dimension(row) for row in exponents]
-    text = "Kaplan-Yorke dimension of the attractor in the stroboscopic section"
-    return {
-        "exponents": variable((along, "order"), exponents, "1", "Lyapunov exponents, per tau"),
-        "exponent_errors": variable((along, "order"), errors, "1", "their standard errors"),
-        "kaplan_yorke_dimension": variable(along, dimensions, "1", text),
-    }
 
 
 @question(LyapunovJob)

@@ -30,33 +30,6 @@ class Spectrum(NamedTuple):
     errors: Floats
 
 
-class BlockGrowth(NamedTuple):
-    """Logarithmic growth of a vector over successive blocks of matrices, and their durations."""
-
-    growth: Floats  # logarithm of a vector's growth over each block
-    durations: Floats  # of the blocks, in units of tau
-
-
-def block_growth(matrices: Floats, times: Floats, end: float, blocks: int) -> BlockGrowth | None:
-    """Return a vector's logarithmic growth over blocks of matrices; None if it becomes zero."""
-    matrices = np.ascontiguousarray(matrices)
-    count, rows = matrices.shape[:2]
-    size = max(1, count // blocks)
-    growth = np.empty(-(-count // size))
-    data, out = matrices.ctypes.data, growth.ctypes.data
-    if not exponent_library().find_growth(data, count, rows, size, out):
-        return None
-    return BlockGrowth(growth, np.diff(np.append(times[::size], end)))
-
-
-def mean_growth_and_error(blocks: BlockGrowth, batches: int) -> tuple[float, float]:
-    """Return the mean growth per unit of tau, and its standard error by batch means."""
-    growth, durations = (np.ascontiguousarray(column) for column in blocks)
-    mean, columns = np.empty(2), (growth.ctypes.data, durations.ctypes.data)
-    exponent_library().find_average(*columns, len(growth), batches, mean.ctypes.data)
-    return float(mean[0]), float(mean[1])
-
-
 def compound_matrices(matrices: Floats, order: int) -> Floats:
     """Return compound matrices (all minors of an order), which map volume elements."""
     if order == 1:
@@ -70,20 +43,28 @@ def lyapunov_spectrum(
     impacts: Impacts, end: float, point: Point, blocks: int, batches: int
 ) -> Spectrum:
     """Return the exponents by non-dimensional impacts up to ``end``: -inf beyond the rank."""
+    library, times = exponent_library(), impacts.time
     matrices, _ = deviation_matrices_and_contacts(impacts, end, point)
     rank = CONTACT_RANK if impacts.sticks.any() else STATES
-    exponents, errors = np.full(STATES, -math.inf), np.full(STATES, math.nan)
-    before: Floats | None = None
+    size = max(1, len(times) // blocks)  # of a block
+    durations = np.diff(np.append(times[::size], end))
+    spectrum, before = unknown_spectrum(-math.inf), np.zeros_like(durations)
     for order in range(1, rank + 1):
-        volumes = block_growth(compound_matrices(matrices, order), impacts.time, end, blocks)
-        if volumes is None:
-            break
-        growth = volumes.growth if before is None else volumes.growth - before
-        before = volumes.growth
-        exponents[order - 1], errors[order - 1] = mean_growth_and_error(
-            volumes._replace(growth=growth), batches
-        )
-    return Spectrum(exponents, errors)
+        volumes = np.ascontiguousarray(compound_matrices(matrices, order))
+        growth, mean_and_error = np.empty_like(durations), np.empty(2)  # growth: logarithmic
+        counts = *volumes.shape[:2], size
+        if not library.find_growth(volumes.ctypes.data, *counts, growth.ctypes.data):
+            break  # it becomes zero
+        more, before = growth - before, growth
+        columns = more.ctypes.data, durations.ctypes.data, len(more)
+        library.find_average(*columns, batches, mean_and_error.ctypes.data)
+        spectrum.exponents[order - 1], spectrum.errors[order - 1] = mean_and_error
+    return spectrum
+
+
+def unknown_spectrum(exponent: float = math.nan) -> Spectrum:
+    """Return four times an exponent, without errors."""
+    return Spectrum(np.full(STATES, exponent), np.full(STATES, math.nan))
 
 
 def bonded_spectrum(structure: Structure) -> Spectrum:

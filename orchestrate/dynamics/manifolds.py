@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +15,13 @@ from ..fmu import OSCILLATOR, Instance, start_motion
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Positive, checked_number, whole
-from ..response.labels import flags, make_dataset, nondimensional_state_coordinate, variable
+from ..response.labels import (
+    column_variables,
+    flags,
+    make_dataset,
+    nondimensional_state_coordinate,
+    variable,
+)
 from ..response.questions import require_delaminated
 from ..response.signatures import as_given, question
 from ..running.job import Fmus, Table
@@ -44,6 +50,14 @@ from .turning_points import stroboscopic_states
 SIDES = ("+", "-")
 ENDS = {0: curve_growth.LENGTH, 1: curve_growth.POINTS, 2: curve_growth.CONVERGED}
 COUNTS = ("impact_count", "contact_count")
+BREAKS = {
+    "break_iterate": "number of the last point before the break",
+    "break_arclength": "from the saddle to the break",
+    "break_distance": "across the break, in xi (3)",
+    "break_power": "with which that distance falls with that of the starts: 0 at a jump",
+    "break_impacts": "impacts more behind the break",
+    "break_contacts": "permanent contacts more behind the break",
+}
 ROUNDING = 16.0 * float(np.finfo(float).eps)  # of a state's largest number, with room
 ROUNDED = 2.0**-44, 2.0**-36  # to that a saddle's numbers are rounded, and its eigenvector
 
@@ -134,18 +148,18 @@ class ManifoldJob(SingleOrbitQuestion):
             expected = "expected an orbit of this structure"
             raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
         saddle = Saddle.from_orbit(family.orbit(root.unknowns))
-        x1, x2, *_ = saddle.state.tolist()
-        gap = (x2 - x1) / saddle.size  # at phase 0
+        gap = float(saddle.state[1] - saddle.state[0]) / saddle.size  # at phase 0
         # starts lie between the distance and its image, where the first piece ends
         along = float(saddle.direction[1] - saddle.direction[0])
         change = abs(along * saddle.growth_factor)
-        if self.distance * change > max(gap, 0.0):  # starts would be beyond a closed gap
-            limit = f"expected a distance below {gap / change:.2g}"
-            if gap <= 0.0:
-                limit = "expected an orbit whose gap is open at phase 0"
+        taken = self.distance * change
+        if taken > max(gap, 0.0):  # starts would be beyond a closed gap
+            limit = "an orbit whose gap is open at phase 0"
+            if gap > 0.0:
+                limit = f"a distance below {gap / change:.2g}"
             raise InputError(
                 f"distance = {self.distance:g}: the gap at phase 0 is {gap:.2g} of the orbit's "
-                f"size, and a start takes up to {self.distance * change:.2g} of it; {limit}"
+                f"size, and a start takes up to {taken:.2g} of it; expected {limit}"
             )
         return saddle
 
@@ -162,13 +176,11 @@ class ManifoldJob(SingleOrbitQuestion):
                 max_step=curve_growth.GrowthSettings.max_step * max(1.0, math.log(2.0) / growth),
                 resolution=ROUNDING * largest / (self.distance * saddle.size * growth),
             )
-            curves = [
-                curve_growth.CurveGrower(
-                    self.make_point_function(instance, saddle, sign), settings
-                ).grow()
-                for sign in (1.0, -1.0)
-            ]
-        return {**curves_table(curves, saddle), "saddle": saddle.state[np.newaxis]}
+            images = [self.make_point_function(instance, saddle, sign) for sign in (1.0, -1.0)]
+            curves = [curve_growth.CurveGrower(image, settings).grow() for image in images]
+        numbers = {"multiplier": [saddle.multiplier], "size": [saddle.size]}
+        of_saddle = {name: np.array(number) for name, number in numbers.items()}
+        return {**curves_table(curves), **of_saddle, "saddle": saddle.state[np.newaxis]}
 
     def make_point_function(
         self, instance: Instance, saddle: Saddle, sign: float
@@ -196,15 +208,38 @@ class ManifoldJob(SingleOrbitQuestion):
         return image
 
     def dataset(self, table: Table) -> xr.Dataset:
-        point = self.setting.point(self.values)
+        point, along = self.setting.point(self.values), ("side", "point")
+        faces, arclength, iterate = np.split(table["rows"], [4, 5], axis=-1)
+        xi, gap = faces.copy(), faces[..., 1] - faces[..., 0]
+        xi[..., 1] -= point.structure.gap_offset / point.displacement_unit
+        states = point.states_from_faces(faces.copy())
+        saddle = point.states_from_faces(table["saddle"][0].copy())
+        rate = point.velocity_unit * (faces[..., 3] - faces[..., 2])
+        text = "states at phase 0: x1, x2 in m, v1, v2 in m/s; NaN where the curve is broken"
+        of_size = "largest displacement or velocity in xi (3)"
+        count = "excitation periods over those of a return, from the first piece on"
+        broken = table["breaks"].T
+        variables = {
+            "state": variable((*along, "coordinate"), states, "SI", text),
+            "xi": variable((*along, "coordinate"), xi, "1", "states at phase 0 (3)"),
+            "x_rel": variable(along, point.displacement_unit * gap, "m", "gap at phase 0"),
+            "v_rel": variable(along, rate, "m/s", "its rate"),
+            "arclength": variable(along, arclength[..., 0], "1", "from the saddle, in xi (3)"),
+            "iterate": variable(along, iterate[..., 0], "1", count),
+            "end": flags("side", table["ends"], "why the curve ends", ENDS),
+            "saddle": variable("coordinate", saddle, "SI", "the orbit itself"),
+            "multiplier": variable((), table["multiplier"][0], "1", "the one outside the circle"),
+            "orbit_size": variable((), table["size"][0], "1", of_size),
+            "break_side": flags("break", broken[0], "side of the manifold", dict(enumerate(SIDES))),
+            **column_variables("break", BREAKS, broken[1:]),
+        }
         title = f"Unstable manifold of an orbit of {self.period} periods: {self.structure.label()}"
         sides = variable("side", np.array(SIDES), "1", "on which the gap grows, or falls")
         coordinates = {"side": sides, **nondimensional_state_coordinate()}
-        variables = {**curve_variables(table, point), **break_variables(table)}
         return make_dataset(variables, coordinates, title, **dict(self.excitation))
 
 
-def curves_table(curves: Sequence[curve_growth.GrownCurve], saddle: Saddle) -> Table:
+def curves_table(curves: Sequence[curve_growth.GrownCurve]) -> Table:
     """Return both sides' points, breaks and ends as arrays, padded with NaN to equal length."""
     sides = []
     for curve in curves:  # state, arclength and s of each point, a row of NaN at each break
@@ -222,53 +257,7 @@ def curves_table(curves: Sequence[curve_growth.GrownCurve], saddle: Saddle) -> T
         "rows": pad_rows(sides, np.nan),
         "ends": np.array([words[curve.end] for curve in curves]),
         "breaks": np.array(breaks, dtype=float).reshape(-1, 7),
-        "multiplier": np.array([saddle.multiplier]),
-        "size": np.array([saddle.size]),
     }
-
-
-def curve_variables(table: Table, point: Any) -> dict[str, Any]:
-    faces, along = table["rows"][..., :4], ("side", "point")
-    xi, gap = faces.copy(), faces[..., 1] - faces[..., 0]
-    xi[..., 1] -= point.structure.gap_offset / point.displacement_unit
-    text = "states at phase 0: x1, x2 in m, v1, v2 in m/s; NaN where the curve is broken"
-    rate = point.velocity_unit * (faces[..., 3] - faces[..., 2])
-    saddle = table["saddle"][0]
-    count = "excitation periods over those of a return, from the first piece on"
-    return {
-        "state": variable(
-            (*along, "coordinate"), point.states_from_faces(faces.copy()), "SI", text
-        ),
-        "xi": variable((*along, "coordinate"), xi, "1", "states at phase 0 (3)"),
-        "x_rel": variable(along, point.displacement_unit * gap, "m", "gap at phase 0"),
-        "v_rel": variable(along, rate, "m/s", "its rate"),
-        "arclength": variable(along, table["rows"][..., 4], "1", "from the saddle, in xi (3)"),
-        "iterate": variable(along, table["rows"][..., 5], "1", count),
-        "end": flags("side", table["ends"], "why the curve ends", ENDS),
-        "saddle": variable(
-            "coordinate", point.states_from_faces(saddle.copy()), "SI", "the orbit itself"
-        ),
-        "multiplier": variable((), table["multiplier"][0], "1", "the one outside the circle"),
-        "orbit_size": variable(
-            (), table["size"][0], "1", "largest displacement or velocity in xi (3)"
-        ),
-    }
-
-
-def break_variables(table: Table) -> dict[str, Any]:
-    texts = {
-        "iterate": "number of the last point before the break",
-        "arclength": "from the saddle to the break",
-        "distance": "across the break, in xi (3)",
-        "power": "with which that distance falls with that of the starts: 0 at a jump",
-        "impacts": "impacts more behind the break",
-        "contacts": "permanent contacts more behind the break",
-    }
-    rows = table["breaks"].T
-    sides = flags("break", rows[0], "side of the manifold", dict(enumerate(SIDES)))
-    columns = zip(texts.items(), rows[1:], strict=True)
-    others = {f"break_{name}": variable("break", row, "1", t) for (name, t), row in columns}
-    return {"break_side": sides, **others}
 
 
 @question(ManifoldJob)

@@ -26,83 +26,74 @@ from .families import Family, Setting
 from .orbit_search import compare_with_fmu
 from .periodic_orbit import AT_OUTER_END, CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
 from .turning_points import (
-    Amplitudes,
+    amplitudes,
     nearest_miss,
     rotate_to_phase_zero,
     stroboscopic_states,
     turning_points,
 )
 
-STABILITY = {0: "unstable", 1: "stable", UNDECIDED: "undecided"}
-INSIDE = {0: "impact", 1: "impact_into_contact", 2: "release"}
-KINDS = {
-    -1: "none",
-    **INSIDE,
-    **{AT_OUTER_END + kind: f"{name}_outside" for kind, name in INSIDE.items()},
-}
 NO_YES = {0: "no", 1: "yes"}
+INSIDE = {0: "impact", 1: "impact_into_contact", 2: "release"}
+OUTSIDE = {AT_OUTER_END + kind: f"{name}_outside" for kind, name in INSIDE.items()}
 PARTS = np.array(["real", "imaginary"])
 TURNS_AWAY = "smallest gap at which the masses turn away from each other without an impact"
-STATES, NODES, MULTIPLIERS = ("sample", "coordinate"), ("node",), ("multiplier", "part")
-# of each orbit: further dimensions, units, long name; and what flags mean
-VARIABLES: dict[str, tuple[tuple[str, ...], str, str, Mapping[int, str]]] = {
-    "state": (STATES, "SI", "states at phase 0: x1, x2 in m, v1, v2 in m/s", {}),
-    "xi": (STATES, "1", "states at phase 0 (3)", {}),
-    "xi_rel": (("sample",), "1", "gap at phase 0 (21)", {}),
-    "impact_time": (NODES, "s", "impacts after the first phase 0", {}),
-    "impact_velocity": (NODES, "m/s", "their closing speeds", {}),
-    "impacts_per_period": ((), "1", "impacts per excitation period", {}),
-    "permanent_contact": ((), "1", "whether permanent contact occurs", NO_YES),
-    "multipliers": (MULTIPLIERS, "1", "Floquet multipliers, the largest first", {}),
-    "multiplier_product": ((), "1", "their product as dampers and impacts dictate it", {}),
-    "stable": (
-        (),
-        "1",
-        "whether all multipliers lie in the unit circle, with the FMU's own impacts",
-        NO_YES,
-    ),
-    "stability": (
-        (),
-        "1",
-        "stability, undecided where stable by its multipliers with other impacts",
-        STABILITY,
-    ),
-    "exponent": ((), "1", "largest Lyapunov exponent, per unit of tau, from the multipliers", {}),
-    "xi1_max": ((), "1", "largest distance of mass 1 from the box's middle over a eta^2", {}),
-    "xi2_max": ((), "1", "largest distance of mass 2 from the box's middle over a eta^2", {}),
-    "xi_rel_max": ((), "1", "largest gap over a eta^2", {}),
-    "nearest_miss": ((), "1", f"{TURNS_AWAY}; infinite: none", {}),
-    "residual": ((), "1", "what Newton's method leaves of the equations", {}),
-    "fmu_same_impacts": (
-        (),
-        "1",
-        "whether the FMU runs through the same impacts and contacts",
-        NO_YES,
-    ),
-    "fmu_return": ((), "1", "how far from its first state the FMU returns, over a eta^2", {}),
-    "node_kind": (NODES, "1", "what happens", KINDS),
-    "node_phase": (NODES, "rad", "phase of the box, where it happens", {}),
-    "node_position": (NODES, "1", "displacement of mass 1 there over a eta^2", {}),
-    "node_velocity": (NODES, "1", "velocity of their centre over omega a eta^2", {}),
-    "node_closing": (NODES, "1", "closing speed before the impact over omega a eta^2", {}),
+LONG_NAMES = {  # of each orbit's variables
+    "state": "states at phase 0: x1, x2 in m, v1, v2 in m/s",
+    "xi": "states at phase 0 (3)",
+    "xi_rel": "gap at phase 0 (21)",
+    "impact_time": "impacts after the first phase 0",
+    "impact_velocity": "their closing speeds",
+    "impacts_per_period": "impacts per excitation period",
+    "permanent_contact": "whether permanent contact occurs",
+    "multipliers": "Floquet multipliers, the largest first",
+    "multiplier_product": "their product as dampers and impacts dictate it",
+    "stable": "whether all multipliers lie in the unit circle, with the FMU's own impacts",
+    "stability": "stability, undecided where stable by its multipliers with other impacts",
+    "exponent": "largest Lyapunov exponent, per unit of tau, from the multipliers",
+    "xi1_max": "largest distance of mass 1 from the box's middle over a eta^2",
+    "xi2_max": "largest distance of mass 2 from the box's middle over a eta^2",
+    "xi_rel_max": "largest gap over a eta^2",
+    "nearest_miss": f"{TURNS_AWAY}; infinite: none",
+    "residual": "what Newton's method leaves of the equations",
+    "fmu_same_impacts": "whether the FMU runs through the same impacts and contacts",
+    "fmu_return": "how far from its first state the FMU returns, over a eta^2",
+    "node_kind": "what happens",
+    "node_phase": "phase of the box, where it happens",
+    "node_position": "displacement of mass 1 there over a eta^2",
+    "node_velocity": "velocity of their centre over omega a eta^2",
+    "node_closing": "closing speed before the impact over omega a eta^2",
+}
+UNITS = {"state": "SI", "impact_time": "s", "impact_velocity": "m/s", "node_phase": "rad"}  # else 1
+DIMENSIONS = {  # beside that along the orbits
+    **dict.fromkeys(("state", "xi"), ("sample", "coordinate")),
+    **{name: ("node",) for name in LONG_NAMES if name.startswith("node_")},
+    **dict.fromkeys(("impact_time", "impact_velocity"), ("node",)),
+    **{"xi_rel": ("sample",), "multipliers": ("multiplier", "part")},
+}
+MEANINGS = {  # of flags
+    **dict.fromkeys(("permanent_contact", "stable", "fmu_same_impacts"), NO_YES),
+    "stability": {0: "unstable", 1: "stable", UNDECIDED: "undecided"},
+    "node_kind": {-1: "none", **INSIDE, **OUTSIDE},
 }
 
 
 def orbit_row(instance: EventInstance, family: Family, unknowns: Floats, residual: float) -> Table:
     """Return all stored numbers of a root's orbit, checked by a run in the FMU."""
-    orbit, values = family.orbit(unknowns), unknowns[family.node_unknowns :]
+    nodes_end = family.node_unknowns
+    unknowns = unknowns[: nodes_end + len(family.setting.over)]  # others are those of a bifurcation
+    orbit, values = family.orbit(unknowns), unknowns[nodes_end:]
     same, away = compare_with_fmu(instance, family.setting, values, orbit)
-    turns = turning_points(orbit)
-    nodes, first = rotate_to_phase_zero(orbit.nodes, orbit.sequence.periods)
-    multipliers, amplitudes = orbit.multipliers(), Amplitudes.from_orbit(orbit, turns)
+    turns, multipliers = turning_points(orbit), orbit.multipliers()
+    sequence, nodes = rotate_to_phase_zero(orbit.sequence, orbit.nodes)
     row = {
         "values": values,
-        "kinds": np.roll(np.array(orbit.sequence.kinds, dtype=int), -first),
+        "kinds": np.array(sequence.kinds, dtype=int),
         "nodes": nodes,  # from phase 0 on
         "zero": stroboscopic_states(orbit),
         "multipliers": np.stack([multipliers.real, multipliers.imag], axis=1),
         "product": orbit.multiplier_product(),
-        "amplitudes": (amplitudes.xi_1, amplitudes.xi_2, amplitudes.gap),
+        "amplitudes": amplitudes(orbit, turns),
         "nearest_miss": nearest_miss(orbit, turns)[0],
         "residual": residual,
         "same": same,
@@ -128,19 +119,14 @@ def orbit_table(rows: Sequence[Table]) -> Table:
     return {**padded, **{name: np.array(column) for name, column in columns.items()}}
 
 
-def located_table(prefix: str, rows: Sequence[Table], located: Sequence[Any]) -> Table:
-    """Stack the rows of points located on a branch, with their kinds and positions, by a prefix."""
-    columns = orbit_table(rows) if rows else {}
+def branch_table(rows: Sequence[Table], prefix: str, located: Sequence[Any]) -> Table:
+    """Stack the rows of points along a branch and then, by a prefix, of those located on it."""
+    count = len(rows) - len(located)
+    columns = orbit_table(rows[count:]) if located else {}
     columns["kind"] = np.array([each.kind for each in located], dtype=int)
     columns["place"] = np.array([each.position for each in located], dtype=float)
-    return {f"{prefix}_{name}": column for name, column in columns.items()}
-
-
-def split_located(table: Table, prefix: str) -> tuple[Table, Table]:
-    """Return the columns along a branch, and those of points located on it, by their own names."""
-    located = {key: column for key, column in table.items() if key.startswith(prefix)}
-    along = {key: column for key, column in table.items() if key not in located}
-    return along, {key.removeprefix(f"{prefix}_"): column for key, column in located.items()}
+    of_located = {f"{prefix}_{name}": column for name, column in columns.items()}
+    return {**orbit_table(rows[:count]), **of_located}
 
 
 def orbit_coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
@@ -166,34 +152,68 @@ def orbit_coordinates(setting: Setting, table: Table, row: str) -> dict[str, Var
 
 def orbit_variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
     points = [setting.point(values) for values in table["values"]]
-    frequency = np.array([point.excitation.frequency for point in points])
-    omega = np.array([point.structure.omega for point in points])
-    rests_closed = np.array(
-        [setting.closed_form(values).rest_mode > 0 for values in table["values"]]
-    )
-    nodes, kinds = table["nodes"], table["kinds"]
+    nodes, zero = table["nodes"], table["zero"]
+    xi = zero.copy()
+    xi[:, :, 1] -= np.array([[p.structure.gap_offset / p.displacement_unit] for p in points])
+    states = [point.states_from_faces(faces) for point, faces in zip(points, zero, strict=True)]
     columns = {
-        **state_columns(table["zero"], points),
-        **impact_columns(table, points, frequency, rests_closed),
-        **stability_columns(table, frequency / omega),
+        **{"state": np.array(states), "xi": xi, "xi_rel": zero[:, :, 1] - zero[:, :, 0]},
+        **impact_columns(setting, table, points),
+        **stability_columns(table, points),
         **dict(zip(("xi1_max", "xi2_max", "xi_rel_max"), table["amplitudes"].T, strict=True)),
         **{"nearest_miss": table["nearest_miss"], "residual": table["residual"]},
         **{"fmu_same_impacts": table["same"], "fmu_return": table["away"]},
-        **{"node_kind": kinds, "node_phase": nodes[..., PHASE]},
+        **{"node_kind": table["kinds"], "node_phase": nodes[..., PHASE]},
         **{"node_position": nodes[..., POSITION], "node_velocity": nodes[..., VELOCITY]},
         "node_closing": nodes[..., CLOSING],
     }
+    variables = {}
+    for name, text in LONG_NAMES.items():
+        dims, meanings = (row, *DIMENSIONS.get(name, ())), MEANINGS.get(name)
+        variables[name] = (
+            flags(dims, columns[name], text, meanings)
+            if meanings
+            else variable(dims, columns[name], UNITS.get(name, "1"), text)
+        )
+    return variables
+
+
+def impact_columns(
+    setting: Setting, table: Table, points: Sequence[Point]
+) -> dict[str, NDArray[Any]]:
+    """Return the orbits' impacts: times, speeds, rate; NaN for releases."""
+    nodes, kinds, values = table["nodes"], table["kinds"], table["values"]
+    frequency = np.array([[point.excitation.frequency] for point in points])
+    speed = np.array([[point.velocity_unit] for point in points])
+    rests_closed = np.array([setting.closed_form(row).rest_mode > 0 for row in values])
+    released = (kinds >= 0) & (kinds % AT_OUTER_END == RELEASE)
+    is_impact = (kinds >= 0) & ~released
     return {
-        name: flags((row, *dims), columns[name], text, meanings)
-        if meanings
-        else variable((row, *dims), columns[name], units, text)
-        for name, (dims, units, text, meanings) in VARIABLES.items()
+        "impact_time": np.where(is_impact, nodes[:, :, PHASE] / frequency, np.nan),
+        "impact_velocity": np.where(is_impact, nodes[:, :, CLOSING] * speed, np.nan),
+        "impacts_per_period": is_impact.sum(axis=1) / table["zero"].shape[1],
+        "permanent_contact": released.any(axis=1) | (rests_closed & (kinds < 0).all(axis=1)),
+    }
+
+
+def stability_columns(table: Table, points: Sequence[Point]) -> dict[str, NDArray[Any]]:
+    # inside the unit circle they decide nothing where the FMU has other impacts
+    eta = np.array([each.excitation.frequency / each.structure.omega for each in points])
+    multipliers, time = table["multipliers"], table["zero"].shape[1] * 2.0 * np.pi / eta
+    size = np.hypot(*np.moveaxis(multipliers, -1, 0))
+    with np.errstate(divide="ignore"):
+        exponent = np.log(size[:, 0]) / time
+    inside, same = size[:, 0] < 1.0 - ON_CIRCLE, table["same"]
+    return {
+        **{"multipliers": multipliers, "multiplier_product": table["product"]},
+        **{"stable": inside & same, "stability": np.where(inside & ~same, UNDECIDED, inside)},
+        "exponent": exponent,
     }
 
 
 def located_variables(
     setting: Setting,
-    rows: Table,
+    table: Table,
     prefix: str,
     kinds: tuple[str, Mapping[int, str]],
     parameters: Mapping[str, str],
@@ -203,6 +223,8 @@ def located_variables(
 
     ``kinds`` has the long name and meanings of the kinds, ``parameters`` labels by parameter.
     """
+    own = (key for key in table if key.startswith(f"{prefix}_"))
+    rows = {key.removeprefix(f"{prefix}_"): table[key] for key in own}
     line = "branch" if len(setting.over) == 1 else "curve"
     place = f"position along the {line}'s points: between two where not whole"
     data = {
@@ -214,57 +236,20 @@ def located_variables(
         return data | {f"{prefix}_{label}": empty[name] for name, label in parameters.items()}
     values = orbit_coordinates(setting, rows, prefix)
     data |= {f"{prefix}_{label}": values[name] for name, label in parameters.items()}
-    for name, (dims, column, attributes) in orbit_variables(setting, rows, prefix).items():
-        if name in kept:
-            prefixed = tuple(f"{prefix}_node" if dim == "node" else dim for dim in dims)
-            data[f"{prefix}_{name}"] = prefixed, column, attributes
+    variables = orbit_variables(setting, rows, prefix)
+    for name in filter(kept.__contains__, variables):
+        dims, column, attributes = variables[name]
+        prefixed = tuple(f"{prefix}_node" if dim == "node" else dim for dim in dims)
+        data[f"{prefix}_{name}"] = prefixed, column, attributes
     return data
 
 
 def branch_dataset(
-    setting: Setting, table: Table, more: Mapping[str, Variable], attributes: Mapping[str, Any]
+    setting: Setting, table: Table, more: Mapping[str, Variable], **attributes: Any
 ) -> xr.Dataset:
+    """Return the dataset of points along a branch, with the reasons why it ends; ``more`` in it."""
+    first, last = map(str, table["ends"])
     names = orbit_coordinates(setting, table, "point")
     data = {**orbit_variables(setting, table, "point"), **names, **more}
+    attributes |= {"first_end": first, "last_end": last}
     return xr.Dataset(data, attrs=attributes).set_coords(list(names))
-
-
-def state_columns(zero: Floats, points: Sequence[Point]) -> dict[str, Floats]:
-    """Return the orbits' stroboscopic states at phase 0, SI and xi, and their gap."""
-    xi = zero.copy()
-    xi[:, :, 1] -= np.array([[p.structure.gap_offset / p.displacement_unit] for p in points])
-    state = [point.states_from_faces(faces) for point, faces in zip(points, zero, strict=True)]
-    return {"state": np.array(state), "xi": xi, "xi_rel": zero[:, :, 1] - zero[:, :, 0]}
-
-
-def impact_columns(
-    table: Table, points: Sequence[Point], frequency: Floats, rests_closed: NDArray[np.bool_]
-) -> dict[str, NDArray[Any]]:
-    """Return the orbits' impacts: times, speeds, rate; NaN for releases."""
-    nodes, kinds, speed = (
-        table["nodes"],
-        table["kinds"],
-        np.array([[p.velocity_unit] for p in points]),
-    )
-    released = (kinds >= 0) & (kinds % AT_OUTER_END == RELEASE)
-    is_impact = (kinds >= 0) & ~released
-    return {
-        "impact_time": np.where(is_impact, nodes[:, :, PHASE] / frequency[:, None], np.nan),
-        "impact_velocity": np.where(is_impact, nodes[:, :, CLOSING] * speed, np.nan),
-        "impacts_per_period": is_impact.sum(axis=1) / table["zero"].shape[1],
-        "permanent_contact": released.any(axis=1) | (rests_closed & (kinds < 0).all(axis=1)),
-    }
-
-
-def stability_columns(table: Table, eta: Floats) -> dict[str, NDArray[Any]]:
-    # inside the unit circle they decide nothing where the FMU has other impacts
-    multipliers, time = table["multipliers"], table["zero"].shape[1] * 2.0 * np.pi / eta
-    size = np.hypot(*np.moveaxis(multipliers, -1, 0))
-    with np.errstate(divide="ignore"):
-        exponent = np.log(size[:, 0]) / time
-    inside, same = size[:, 0] < 1.0 - ON_CIRCLE, table["same"]
-    return {
-        **{"multipliers": multipliers, "multiplier_product": table["product"]},
-        **{"stable": inside & same, "stability": np.where(inside & ~same, UNDECIDED, inside)},
-        "exponent": exponent,
-    }

@@ -22,13 +22,7 @@ from .periodic_orbit import (
     ImpactSequence,
     PeriodicOrbit,
 )
-from .turning_points import (
-    nearest_miss,
-    rotate_to_phase_zero,
-    stroboscopic_states,
-    turning_points,
-    weakest_force,
-)
+from .turning_points import nearest_miss, rotate_to_phase_zero, stroboscopic_states, weakest_force
 from .variational import contact_durations
 
 Guess = tuple[ImpactSequence, Floats]
@@ -60,8 +54,8 @@ def guess_from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods
         if released is not None:
             kinds.append(int(end) + RELEASE)
             rows.append(released)
-    ordered, first = rotate_to_phase_zero(np.array(rows).reshape(-1, 4), periods)
-    return ImpactSequence(periods, tuple(kinds[first:] + kinds[:first])), ordered
+    sequence = ImpactSequence(periods, tuple(kinds))
+    return rotate_to_phase_zero(sequence, np.array(rows).reshape(-1, 4))
 
 
 def release_node(form: ClosedForm, stick: Floats, until: float, outer: bool) -> Floats | None:
@@ -75,9 +69,8 @@ def release_node(form: ClosedForm, stick: Floats, until: float, outer: bool) -> 
         return None
     mode, released = np.where(end, OUTER, INNER), phase + form.eta * duration
     free = start - form.steady_response(phase, mode)
-    state = (
-        form.flow_matrices(duration, mode)[0] @ free[0] + form.steady_response(released, mode)[0]
-    )
+    state = form.flow_matrices(duration, mode)[0] @ free[0]
+    state = state + form.steady_response(released, mode)[0]
     return np.array([float(released[0]), state[0], state[2], 0.0])
 
 
@@ -132,10 +125,9 @@ def why_no_motion(orbit: PeriodicOrbit) -> str:
     """Return why a solved orbit is no possible motion (masses overlap ...); empty if it is one."""
     if (orbit.durations <= 0.0).any():
         return "its impacts are out of order"
-    closing = orbit.nodes[~orbit.sequence.releases, CLOSING] if orbit.node_count else np.ones(1)
-    if not (closing > 0.0).all():
+    if not (orbit.nodes[~orbit.sequence.releases, CLOSING] > 0.0).all():
         return "an impact has no closing speed"
-    if nearest_miss(orbit, turning_points(orbit))[0] < 0.0:
+    if nearest_miss(orbit)[0] < 0.0:
         return "the masses would go through each other"
     if weakest_force(orbit)[0] < 0.0:
         return "the contact would pull"
@@ -175,22 +167,19 @@ def compare_with_fmu(
     observed = instance.record_impacts(0.0, end)
     after = point.faces_from_states(instance.read("x1", "x2", "v1", "v2"))
     away = float(np.abs(after - state).max())
-    nodes, first = rotate_to_phase_zero(orbit.nodes, orbit.sequence.periods)
-    kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)
-    is_impact = kinds % AT_OUTER_END != RELEASE
-    expected, kinds = nodes[is_impact], kinds[is_impact]
-    phases, sticks = point.excitation.frequency * observed.time, observed.sticks
-    if len(phases) != len(expected):
+    sequence, nodes = rotate_to_phase_zero(orbit.sequence, orbit.nodes)
+    is_expected, is_observed = ~sequence.releases, np.ones(len(observed.time), dtype=bool)
+    if is_observed.sum() != is_expected.sum():
         # of the motion's speed the square root of a gap's rounding is 1e-8
         grazing = 1e-6 * float(np.abs(orbit.end_states[:, 2:]).max())
         is_observed = observed.closing / point.velocity_unit > grazing
-        is_expected = expected[:, CLOSING] > grazing
-        phases, sticks = phases[is_observed], sticks[is_observed]
-        expected, kinds = expected[is_expected], kinds[is_expected]
-    if len(phases) != len(expected):
+        is_expected &= nodes[:, CLOSING] > grazing
+    if is_observed.sum() != is_expected.sum():
         return False, away
-    near = np.abs(phases - expected[:, PHASE]).max(initial=0.0) < 1e-6  # rad
-    return bool(near and (sticks == (kinds % AT_OUTER_END == STICK)).all()), away
+    phases = point.excitation.frequency * observed.time[is_observed]
+    near = np.abs(phases - nodes[is_expected, PHASE]).max(initial=0.0) < 1e-6  # rad
+    sticks = sequence.sticks[is_expected]
+    return bool(near and (observed.sticks[is_observed] == sticks).all()), away
 
 
 def first_possible_orbit(

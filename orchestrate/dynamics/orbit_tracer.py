@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .bifurcation_kinds import KINDS, Kind
 from .closed_form import Floats
-from .continuation import ArclengthStepper, NoConvergenceError, Root
+from .continuation import NoConvergenceError, Root
 from .families import Family
 from .orbit_search import least_periods, solve_orbit
 from .periodic_orbit import (
@@ -23,17 +23,9 @@ from .periodic_orbit import (
     PeriodicOrbit,
     kind_at_same_end,
 )
-from .tracer import (
-    NO_CONVERGENCE,
-    BranchSegment,
-    BranchStep,
-    BranchTracer,
-    ContinuationSettings,
-    LocatedBifurcation,
-)
-from .turning_points import nearest_miss, turning_points, weakest_force
+from .tracer import NO_CONVERGENCE, Bifurcation, BranchSegment, BranchStep, BranchTracer
+from .turning_points import nearest_miss, weakest_force
 
-CONTACT_KINDS = (Kind.CONTACT_LOST, Kind.CONTACT_BEGUN)
 STICK_TOLERANCE = 1e-10  # of (17), over a eta^2: an impact so near to sticking may do either
 
 
@@ -64,7 +56,7 @@ class OrbitPoint:
     @cached_property
     def nearest_miss(self) -> float:
         """Return how near the masses come to an end in flight without an impact: 0 at touching."""
-        return nearest_miss(self.orbit, turning_points(self.orbit))[0]
+        return nearest_miss(self.orbit)[0]
 
     @cached_property
     def sticking_margins(self) -> Floats:
@@ -79,9 +71,8 @@ class OrbitPoint:
     def violates_sticking_condition(self) -> bool:
         """Return whether an impact sticks, or does not, against the sticking condition (17)."""
         # where (17) is all but met either will do: rounding must not decide how an orbit continues
-        if not self.orbit.node_count:
-            return False
-        return min(self.contact_margin(kind) for kind in CONTACT_KINDS) <= -STICK_TOLERANCE
+        margins = map(self.contact_margin, (Kind.CONTACT_LOST, Kind.CONTACT_BEGUN))
+        return self.orbit.node_count > 0 and min(margins) <= -STICK_TOLERANCE
 
     def contact_margin(self, kind: Kind) -> float:
         """Return the margin to losing or gaining a permanent contact: negative beyond it."""
@@ -90,28 +81,6 @@ class OrbitPoint:
         if kind == Kind.CONTACT_LOST:
             return float(np.minimum(-margins, orbit.durations)[orbit.in_contact].min(initial=1.0))
         return float(margins[~(orbit.in_contact | orbit.sequence.releases)].min(initial=1.0))
-
-    def test_function(self, kind: Kind) -> float:
-        """Return the test function of a bifurcation kind: it changes sign at the bifurcation."""
-        if kind == Kind.FOLD:
-            return float(self.root.tangent[self.family.node_unknowns])
-        if kind in (Kind.FLIP, Kind.TORUS):
-            return unit_circle_test(self.multipliers, pairs=kind == Kind.TORUS)
-        if kind == Kind.GRAZING:
-            closing = self.orbit.nodes[~self.orbit.sequence.releases, CLOSING]
-            return float(closing.min(initial=np.inf))
-        if kind == Kind.TOUCHING:
-            return self.nearest_miss
-        if kind == Kind.EARLIER_RELEASE:
-            return weakest_force(self.orbit)[0]
-        return self.contact_margin(kind)
-
-    def zero_is_bifurcation(self, kind: Kind) -> bool:
-        """Return whether a test function's zero here is a true bifurcation."""
-        # the product of two real multipliers may be 1 as well as that of a pair on the unit circle
-        if kind != Kind.TORUS:
-            return True
-        return bool((np.abs(np.abs(self.upper_multipliers) - 1.0) < 1e-6).any())
 
     def reversed(self) -> OrbitPoint:
         return OrbitPoint(self.family, self.root.reversed())
@@ -139,12 +108,6 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     )
     finds_pairs = True
 
-    def __init__(self, start: OrbitPoint, settings: ContinuationSettings) -> None:
-        # short, as the branch is not known yet
-        first, longest = min(1e-3, settings.max_step), settings.max_step
-        stepper = ArclengthStepper(start.family, start.root, first, longest)
-        super().__init__(stepper, settings.max_points)
-
     def make_point(self, root: Root) -> OrbitPoint:
         return OrbitPoint(self.stepper.curve, root)
 
@@ -157,17 +120,32 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         return bool((orbit.durations[~orbit.in_contact] > 0.0).all())
 
     def test_function(self, point: OrbitPoint, kind: Kind) -> float:
-        return point.test_function(kind)
+        orbit = point.orbit
+        if kind == Kind.FOLD:
+            return float(point.root.tangent[point.family.node_unknowns])
+        if kind in (Kind.FLIP, Kind.TORUS):
+            return unit_circle_test(point.multipliers, pairs=kind == Kind.TORUS)
+        if kind == Kind.GRAZING:
+            return float(orbit.nodes[~orbit.sequence.releases, CLOSING].min(initial=np.inf))
+        if kind == Kind.TOUCHING:
+            return point.nearest_miss
+        if kind == Kind.EARLIER_RELEASE:
+            return weakest_force(orbit)[0]
+        return point.contact_margin(kind)
 
     def zero_is_bifurcation(self, kind: Kind, point: OrbitPoint, part: float) -> bool:
-        return part > 1e-7 and point.zero_is_bifurcation(kind)
+        # the product of two real multipliers may be 1 as well as that of a pair on the unit circle
+        pairs = np.abs(np.abs(point.upper_multipliers) - 1.0) < 1e-6
+        return part > 1e-7 and (kind != Kind.TORUS or bool(pairs.any()))
 
-    def locate_bifurcations(
-        self, step: BranchStep[OrbitPoint]
-    ) -> list[LocatedBifurcation[OrbitPoint]]:
-        located = super().locate_bifurcations(step)
+    def locate_bifurcations(self, step: BranchStep[OrbitPoint]) -> list[Bifurcation[OrbitPoint]]:
+        located, before = super().locate_bifurcations(step), step.before.orbit
+        periods = before.sequence.periods
         for i, each in enumerate(located):
-            if has_halved_period(each, step.before):
+            # at a fold an orbit of several periods may become that of half of them
+            if each.kind == Kind.FOLD and (
+                least_periods(each.point.orbit, 1e-4) < periods == least_periods(before)
+            ):
                 return [*located[:i], replace(each, kind=Kind.HALVING)]
         return located
 
@@ -210,14 +188,6 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
             segment.end = KINDS[Kind.CONTACT_LOST]
         else:
             segment.end = NO_CONVERGENCE
-
-
-def has_halved_period(located: LocatedBifurcation[OrbitPoint], before: OrbitPoint) -> bool:
-    """Return whether an orbit has half the period at a fold, of several that had not before."""
-    periods = before.orbit.sequence.periods
-    if located.kind != Kind.FOLD or least_periods(before.orbit) < periods:
-        return False
-    return least_periods(located.point.orbit, 1e-4) < periods
 
 
 def fit_chattering_impacts(point: OrbitPoint) -> OrbitPoint:

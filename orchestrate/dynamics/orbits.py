@@ -27,10 +27,11 @@ from ..model.arguments import (
 )
 from ..response import questions
 from ..response.labels import make_dataset
+from ..response.questions import Point
 from ..response.signatures import as_given, question
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
-from .closed_form import Floats
+from .closed_form import ClosedForm, Floats
 from .continuation import SOLVER_ERRORS
 from .families import Setting, nonzero_pushes
 from .orbit_records import orbit_coordinates, orbit_row, orbit_table, orbit_variables
@@ -72,9 +73,12 @@ class FirstGuess:
 
 def call_text_from_start(job: Any, values: Floats, **keywords: Any) -> str:
     """Return Python source of a call that begins with an orbit, the orbit's call included."""
-    setting = job.setting
-    guess = job.start.argument_text(setting.point(values).excitation.frequency)
-    start = setting.orbit_call_text(values, job.period, guess)
+    setting, point = job.setting, job.setting.point(values)
+    numbers = {**dict(setting.excitation), **dict(zip(setting.over, values.tolist(), strict=True))}
+    shown = {name: numbers[name] for name in questions.QUANTITIES if name in numbers}
+    of_orbit = [f"{name}={value!r}" for name, value in {**shown, "period": job.period}.items()]
+    guess = f"guess={job.start.argument_text(point.excitation.frequency)}"
+    start = f"orbit({', '.join([repr(point.structure), *of_orbit, guess])})"
     parts = [f"{name}={value!r}" for name, value in keywords.items()]
     return f"{job.asked}({', '.join([repr(job.structure), f'start={start}', *parts])})"
 
@@ -113,55 +117,44 @@ class OrbitJob(SingleOrbitQuestion):
         return f"orbit({', '.join(parts)})"
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
+        setting, values = self.setting, self.values
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            return orbit_table([find_orbit_row(instance, self)])
+            guesses = self.guesses(instance, setting.point(values), setting.closed_form(values))
+            try:
+                family, root = first_possible_orbit(
+                    setting, guesses, values, prefer_stable=self.guess is None
+                )
+            except SOLVER_ERRORS as reason:
+                expected = "another period, or a guess to orbit, whose result is a start for branch"
+                expected = "another guess" if self.guess else expected
+                raise InputError(
+                    f"period = {self.period}: no orbit found ({reason}); expected {expected}"
+                ) from None
+            return orbit_table([orbit_row(instance, family, root.unknowns, root.residual)])
+
+    def guesses(self, instance: EventInstance, point: Point, form: ClosedForm) -> Iterator[Guess]:
+        """Yield guesses by the user's one, or from close returns, then with a single impact."""
+        guess, period = self.guess, self.period
+        if guess is None:
+            returns = close_returns(instance, point, period, self.transient, self.search)
+            for state, _ in islice(list(returns), self.tries):
+                yield simulate_guess(instance, point, form, state, period)
+            yield from single_impact_guesses(form, period)
+        elif guess.state:
+            yield simulate_guess(instance, point, form, np.array(guess.state), period)
+        elif np.shape(guess.nodes)[1:] == (4,):
+            yield guess.as_guess(period)
+        else:
+            sequence, phases = ImpactSequence(period, guess.kinds), np.array(guess.nodes)[:, 0]
+            for shift in np.arange(12) * TURN / 12:
+                yield guess_from_phases(form, sequence, phases + shift)
 
     def dataset(self, table: Table) -> xr.Dataset:
         setting = self.setting
         title = f"Periodic orbit of {self.period} periods: {self.structure.label()}"
         variables = orbit_variables(setting, table, "point")
-        return make_dataset(variables, orbit_coordinates(setting, table, "point"), title).isel(
-            point=0
-        )
-
-
-def find_orbit_row(instance: EventInstance, job: OrbitJob) -> Table:
-    """Solve for the job's orbit and run it in the FMU; return the row of its numbers."""
-    setting, values = job.setting, job.values
-    try:
-        guesses = orbit_guesses(instance, job, setting, values)
-        family, root = first_possible_orbit(
-            setting, guesses, values, prefer_stable=job.guess is None
-        )
-    except SOLVER_ERRORS as reason:
-        expected = "another period, or a guess to orbit, whose result is a start for branch"
-        expected = "another guess" if job.guess else expected
-        raise InputError(
-            f"period = {job.period}: no orbit found ({reason}); expected {expected}"
-        ) from None
-    return orbit_row(instance, family, root.unknowns, root.residual)
-
-
-def orbit_guesses(
-    instance: EventInstance, job: OrbitJob, setting: Setting, values: Floats
-) -> Iterator[Guess]:
-    """Yield guesses by the user's one, or from close returns, then with a single impact."""
-    point, form, guess = setting.point(values), setting.closed_form(values), job.guess
-    if guess is not None and guess.state:
-        yield simulate_guess(instance, point, form, np.array(guess.state), job.period)
-    elif guess is not None:
-        phases = np.array(guess.nodes)
-        if phases.shape[1:] == (4,):
-            yield guess.as_guess(job.period)
-            return
-        sequence = ImpactSequence(job.period, guess.kinds)
-        for shift in np.arange(12) * TURN / 12:
-            yield guess_from_phases(form, sequence, phases[:, 0] + shift)
-    else:
-        returns = close_returns(instance, point, job.period, job.transient, job.search)
-        for state, _ in islice(list(returns), job.tries):
-            yield simulate_guess(instance, point, form, state, job.period)
-        yield from single_impact_guesses(form, job.period)
+        coordinates = orbit_coordinates(setting, table, "point")
+        return make_dataset(variables, coordinates, title).isel(point=0)
 
 
 def checked_guess(
@@ -176,14 +169,11 @@ def checked_guess(
         return guess_from_result(guess)
     if "impact_time" not in guess:
         raise InputError(f"guess: without impact_time; {expected}")
-    times = np.sort(
-        np.asarray(checked_numbers("impact_time", guess["impact_time"]), dtype=float).ravel()
-    )
+    times = np.sort(np.ravel(checked_numbers("impact_time", guess["impact_time"])).astype(float))
     phases = frequency * times
     if not (phases[0] >= 0.0 and phases[-1] - phases[0] < 2.0 * np.pi * period):
         raise InputError(f"impact_time = {times.tolist()}: expected times within {period} periods")
-    rows = tuple((float(phase),) for phase in phases)
-    return FirstGuess(kinds=(IMPACT,) * len(rows), nodes=rows)
+    return FirstGuess(kinds=(IMPACT,) * len(phases), nodes=tuple((p,) for p in phases.tolist()))
 
 
 def guess_from_result(result: Mapping[Any, Any]) -> FirstGuess:

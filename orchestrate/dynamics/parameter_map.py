@@ -24,8 +24,8 @@ from ..model.outcomes import UNDECIDED
 from ..model.spelling import expected_one_of
 from ..response import questions
 from ..response.labels import column_variables, flags, make_dataset, parameter_variable
-from ..response.multiplicity import DECIDED, Decision
-from ..response.respond import DecidedResponse, Response, decisions_from, responses_from
+from ..response.multiplicity import DECIDED
+from ..response.respond import DecidedResponse, decisions_from, responses_from
 from ..response.response_loop import LoopSettings, response_loop
 from ..response.signatures import as_given, question
 from ..response.sweep import HOW_DECIDED
@@ -87,30 +87,20 @@ class MapJob(questions.Question):
         return [Chunk(i, first, min(first + size, count), None) for i, first in starts]
 
     def work(self, fmus: Fmus, items: Sequence[questions.Point], previous: Table | None) -> Table:
+        """Run points until they are decided, and on for impulses and exponents."""
+        rows = []
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
-            decided = zip(items, self.run_until_decided(plain, items), strict=True)
-            rows = [self.row(eventful, item, *each) for item, each in decided]
+            decided = self.run_until_decided(plain, items)
+            for item, (response, decision, rate) in zip(items, decided, strict=True):
+                run_on, structure = (eventful, item, response.end), item.structure
+                impacts = simulate_nondimensional_impacts(*run_on, self.samples // 2)
+                largest = impacts.impulse(structure, item.velocity_unit).max(initial=0.0)
+                gap, impulse = response.x_rel_max / item.displacement_unit, largest / structure.m1
+                rows.append([rate, *decision, gap, impulse])
+                if self.exponent:
+                    later = simulate_nondimensional_impacts(*run_on, self.periods)
+                    rows[-1] += largest_exponent(later, self.periods, item)
         return {"rows": np.array(rows, dtype=float)}
-
-    def row(
-        self,
-        eventful: EventInstance,
-        item: questions.Point,
-        response: Response,
-        decision: Decision,
-        rate: float,
-    ) -> list[float]:
-        """Run on for impulses and the exponent; return the numbers of one point of the map."""
-        n, decided = decision
-        impacts = simulate_nondimensional_impacts(eventful, item, response.end, self.samples // 2)
-        impulse = (
-            impacts.impulse(item.structure, item.velocity_unit).max(initial=0.0) / item.structure.m1
-        )
-        numbers = [rate, n, decided, response.x_rel_max / item.displacement_unit, impulse]
-        if self.exponent:
-            later = simulate_nondimensional_impacts(eventful, item, response.end, self.periods)
-            numbers += largest_exponent(later, self.periods, item)
-        return numbers
 
     def run_until_decided(
         self, instance: Instance, items: Sequence[questions.Point]

@@ -57,16 +57,6 @@ class ImpactSequence:
         """Return the number of impacts, releases not counted."""
         return len(self.kinds) - int(self.releases.sum())
 
-    def doubled(self) -> ImpactSequence:
-        return ImpactSequence(2 * self.periods, self.kinds * 2)
-
-    def without_node(self, node: int) -> ImpactSequence:
-        return ImpactSequence(self.periods, self.kinds[:node] + self.kinds[node + 1 :])
-
-    def with_impact(self, before: int, outer: bool = False) -> ImpactSequence:
-        kind = IMPACT + AT_OUTER_END * outer
-        return ImpactSequence(self.periods, (*self.kinds[:before], kind, *self.kinds[before:]))
-
 
 def kind_at_same_end(kind: int, event: int) -> int:
     """Return the kind of an event at the end of the stroke that a node of this kind is at."""

@@ -20,7 +20,7 @@ from ..response.signatures import as_given, question
 from ..response.simulate import IN_TIME
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
-from .impacts_after_transient import FollowedResponse, state_after_transient
+from .impacts_after_transient import state_after_transient
 from .variational import deviation_matrices_and_contacts, nondimensional_impacts
 
 COLUMNS = ("x1", "x2", "v1", "v2", "x_rel", "v_rel")
@@ -40,29 +40,24 @@ class PoincareJob(OneMotionQuestion):
     def work(self, fmus: Fmus, items: Sequence[Point], previous: Table | None) -> Table:
         point, period = items[0], self.excitation.period
         with Instance(fmus[OSCILLATOR]) as plain:
-            start = state_after_transient(
-                plain, FollowedResponse(point, self.start), self.transient
-            )
+            start = state_after_transient(plain, point, self.start, self.transient)
             if self.at == "phase":
-                times = self.phase / self.excitation.frequency + period * np.arange(
-                    float(self.periods)
-                )
-                return {"time": times, "rows": simulate_to_times(plain, point, start, times)}
-            with EventInstance(fmus[OSCILLATOR]) as eventful:
-                start_motion(eventful, *point, start)
-                impacts = eventful.record_impacts(0.0, self.periods * period)
-            if self.at == "releases":
+                first = self.phase / self.excitation.frequency
+                times = first + period * np.arange(float(self.periods))
+            else:
+                with EventInstance(fmus[OSCILLATOR]) as eventful:
+                    start_motion(eventful, *point, start)
+                    impacts = eventful.record_impacts(0.0, self.periods * period)
+                if self.at == "impacts":
+                    return states_after_impacts(impacts, self.structure)
                 times = release_times(impacts, point, self.periods * period)
-                return {"time": times, "rows": simulate_to_times(plain, point, start, times)}
-        rate = np.where(impacts.sticks, 0.0, impacts.state[:, 3] - impacts.state[:, 2])
-        gap, stroke = (
-            gaps_of_states(impacts.state, point.structure.gap_offset),
-            self.structure.stroke,
-        )
-        gap = np.where(gap > 0.5 * stroke, stroke, 0.0)  # 0 without a stroke
-        rows = np.column_stack([impacts.state, gap, rate])
-        more = {"impact_velocity": impacts.closing, "sticks": impacts.sticks}
-        return {"time": impacts.time, "rows": rows, **more}
+            start_motion(plain, *point, start)
+            rows, now = np.empty((len(times), len(COLUMNS))), 0.0
+            for row, time in zip(rows, times.tolist(), strict=True):
+                if time > now:
+                    plain.step(now, time)
+                row[:], now = plain.get(*COLUMNS), time
+        return {"time": times, "rows": rows}
 
     def dataset(self, table: Table) -> xr.Dataset:
         time, columns = table["time"], dict(zip(COLUMNS, table["rows"].T, strict=True))
@@ -85,15 +80,13 @@ class PoincareJob(OneMotionQuestion):
         return make_dataset(variables, coordinates, title)
 
 
-def simulate_to_times(instance: Instance, point: Point, start: ArrayLike, times: Floats) -> Floats:
-    """Simulate from phase 0; return displacements, velocities and gap at times in s, (n, 6)."""
-    start_motion(instance, *point, start)
-    rows, now = np.empty((len(times), len(COLUMNS))), 0.0
-    for row, time in zip(rows, times.tolist(), strict=True):
-        if time > now:
-            instance.step(now, time)
-        row[:], now = instance.get(*COLUMNS), time
-    return rows
+def states_after_impacts(impacts: Impacts, structure: Structure) -> Table:
+    gap, stroke = gaps_of_states(impacts.state, structure.gap_offset), structure.stroke
+    gap = np.where(gap > 0.5 * stroke, stroke, 0.0)  # 0 without a stroke
+    rate = np.where(impacts.sticks, 0.0, impacts.state[:, 3] - impacts.state[:, 2])
+    rows = np.column_stack([impacts.state, gap, rate])
+    more = {"impact_velocity": impacts.closing, "sticks": impacts.sticks}
+    return {"time": impacts.time, "rows": rows, **more}
 
 
 def release_times(impacts: Impacts, point: Point, end: float) -> Floats:
@@ -103,8 +96,7 @@ def release_times(impacts: Impacts, point: Point, end: float) -> Floats:
     ends = np.append(scaled.time[1:], omega * end)
     _, lasting = deviation_matrices_and_contacts(scaled, omega * end, point)
     released = scaled.sticks & (lasting < ends - scaled.time)
-    times: Floats = (scaled.time + lasting)[released] / omega
-    return times
+    return np.asarray((scaled.time + lasting)[released] / omega)
 
 
 @question(PoincareJob)

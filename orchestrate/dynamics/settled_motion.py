@@ -14,7 +14,7 @@ from ..model.outcomes import ORBIT
 from ..response.multiplicity import nearest_state
 from ..response.questions import Point
 from .periodic_orbit import PHASE, PeriodicOrbit
-from .turning_points import Amplitudes, stroboscopic_states, turning_points
+from .turning_points import amplitudes, stroboscopic_states
 
 Floats = NDArray[np.float64]
 
@@ -24,8 +24,7 @@ class SettledMotion:
     """A motion that responses settle to: its states, period, impacts, gap, and how decided."""
 
     point: Point
-    # of `Outcome`: by a stable orbit of Newton's method, by states that repeat, or neither
-    decided: int
+    decided: int  # of `Outcome`: by a stable orbit of Newton's method, repeated states, or neither
     # x1, x2 in m, v1, v2 in m/s at phase 0 of successive periods: all of a periodic motion's, some
     # of an irregular one
     states: Floats
@@ -41,14 +40,13 @@ class SettledMotion:
     def from_orbit(cls, point: Point, orbit: PeriodicOrbit, free_phase: float) -> SettledMotion:
         periods, faces = orbit.sequence.periods, stroboscopic_states(orbit)
         faces[:, 1] = np.maximum(faces[:, 0], faces[:, 1])  # in contact, within rounding
-        states = point.states_from_faces(faces)
         return cls(
             point=point,
             decided=ORBIT,
-            states=states,
+            states=point.states_from_faces(faces),
             multiplicity=periods,
             impacts_per_period=orbit.sequence.impact_count / periods,
-            gap=Amplitudes.from_orbit(orbit, turning_points(orbit)).gap * point.displacement_unit,
+            gap=amplitudes(orbit)[2] * point.displacement_unit,
             multiplier=float(np.abs(orbit.multipliers()).max(initial=0.0)),
             orbit=orbit,
             free_phase=free_phase,
@@ -67,13 +65,10 @@ class SettledMotion:
     @cached_property
     def features(self) -> list[float]:
         """Return features that do not depend on the phase: period, impacts, gap statistics."""
-        gaps = (
-            gaps_of_states(self.states, self.point.structure.gap_offset)
-            / self.point.displacement_unit
-        )
+        unit, offset = self.point.displacement_unit, self.point.structure.gap_offset
+        gaps = gaps_of_states(self.states, offset) / unit
         means = [float(gaps.mean()), float(gaps.std())]
-        gap = self.gap / self.point.displacement_unit
-        return [self.multiplicity, self.impacts_per_period, gap, *means]
+        return [self.multiplicity, self.impacts_per_period, self.gap / unit, *means]
 
     def nearest_state(self, state: ArrayLike) -> tuple[int, float]:
         """Return the period whose state at phase 0 is nearest to a state, and its distance."""
@@ -81,9 +76,8 @@ class SettledMotion:
 
     def nearest_state_at_free_phase(self, state: ArrayLike) -> tuple[int, float]:
         """Return the same at the orbit's impact-free phase."""
-        return nearest_state(
-            self.states_at_free_phase, self.point.excitation.frequency, self.gap, state
-        )
+        states, frequency = self.states_at_free_phase, self.point.excitation.frequency
+        return nearest_state(states, frequency, self.gap, state)
 
     @cached_property
     def states_at_free_phase(self) -> Floats:
@@ -94,10 +88,8 @@ class SettledMotion:
         """Return whether both motions are the same orbit: same nodes, or states that are close."""
         if self.orbit is None or other.orbit is None or self.multiplicity != other.multiplicity:
             return False
-        return (
-            have_same_nodes(self.orbit, other.orbit)
-            or self.nearest_state(other.states[0])[1] < within
-        )
+        same_nodes = have_same_nodes(self.orbit, other.orbit)
+        return same_nodes or self.nearest_state(other.states[0])[1] < within
 
 
 def have_same_nodes(first: PeriodicOrbit, second: PeriodicOrbit) -> bool:
@@ -109,11 +101,9 @@ def have_same_nodes(first: PeriodicOrbit, second: PeriodicOrbit) -> bool:
         return True
     size = float(np.abs([first.nodes[:, 1:], second.nodes[:, 1:]]).max()) or 1.0
     for shift in range(len(kinds)):
-        if (np.roll(second_kinds, -shift) != kinds).any():
-            continue
         away = np.roll(second.nodes, -shift, axis=0) - first.nodes
         away[:, PHASE] -= TURN * np.round(away[:, PHASE] / TURN)
         away[:, 1:] /= size
-        if np.abs(away).max() < 1e-6:
+        if (np.roll(second_kinds, -shift) == kinds).all() and np.abs(away).max() < 1e-6:
             return True
     return False

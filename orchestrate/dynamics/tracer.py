@@ -34,12 +34,13 @@ class ContinuationSettings:
 
 @dataclass(frozen=True)
 class Bifurcation(Generic[Point]):
-    """A bifurcation located on a branch: its kind, its point, and its position on the branch."""
+    """A bifurcation located on a branch: its kind, where it lies, and the branch's point there."""
 
     kind: Kind
-    point: Point  # of the branch, there
-    # among the branch's points: between two numbers where it lies between two points
+    # in a step its arclength; on a branch its number among the points, between two points no whole
+    # one
     position: float
+    point: Point
 
 
 @dataclass
@@ -53,15 +54,14 @@ class BranchSegment(Generic[Point]):
 
     def add_bifurcation(self, kind: Kind, point: Point, beyond: float) -> None:
         """Append a bifurcation located ``beyond`` the last point, as a fraction of a step."""
-        self.bifurcations.append(Bifurcation(kind, point, len(self.points) - 1 + beyond))
+        self.bifurcations.append(Bifurcation(kind, len(self.points) - 1 + beyond, point))
 
 
 class BranchTracer(ABC, Generic[AnyCurve, Point]):
     """Base of tracers: the loop of continuation; subclasses supply points and test functions."""
 
     kinds: ClassVar[tuple[Kind, ...]] = ()  # those with a test function
-    # those beyond which there are no points
-    ending_kinds: ClassVar[tuple[Kind, ...]] = ()
+    ending_kinds: ClassVar[tuple[Kind, ...]] = ()  # those beyond which there are no points
     # whether two bifurcations of a kind in one step are sought: it takes further roots
     finds_pairs: ClassVar[bool] = False
 
@@ -125,20 +125,25 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
                 before = self.move_stepper_to(segment.points[-1])
                 step, located = self.take_step(before, rates)
                 rates = {kind: step.mean_slope(kind) for kind in self.kinds}
-                self.append_step(segment, step, located)
+                for each in located:
+                    part = each.position / step.length
+                    if each.kind in self.ending_kinds:  # the last one
+                        part, step.end, step.last_points = 1.0, KINDS[each.kind], [each.point]
+                    segment.add_bifurcation(each.kind, each.point, part)
+                segment.points += step.last_points
+                segment.end = step.end
         except SOLVER_ERRORS:
             self.set_end_without_root(segment)
         return segment
 
     def take_step(
         self, before: Point, rates: Mapping[Kind, float]
-    ) -> tuple[BranchStep[Point], list[LocatedBifurcation[Point]]]:
+    ) -> tuple[BranchStep[Point], list[Bifurcation[Point]]]:
         """Take a step, shortened until all in it can be solved for; return its bifurcations too."""
         stepper = self.stepper
         while True:
-            root, length, at_limit = stepper.step_within(
-                *self.first_limited_unknown_and_limits(), self.accepts
-            )
+            limited = self.first_limited_unknown_and_limits()
+            root, length, at_limit = stepper.step(*limited, self.accepts)
             try:
                 step = BranchStep(self, before, self.make_point(root), length, at_limit, rates)
                 step.end, step.last_points = self.end_reason_and_last_points(step)
@@ -149,14 +154,14 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
                     last, kind = self.fit_impacts_to_step(step)
                     step.end, step.last_points = LIMIT if step.at_limit else "", [last]
                     if kind is not None:
-                        located = [*located, LocatedBifurcation(kind, step.length, last)]
+                        located = [*located, Bifurcation(kind, step.length, last)]
                 return step, located
             except SOLVER_ERRORS:
                 stepper.length = 0.3 * length
                 if stepper.length < stepper.min_length:
                     raise
 
-    def locate_bifurcations(self, step: BranchStep[Point]) -> list[LocatedBifurcation[Point]]:
+    def locate_bifurcations(self, step: BranchStep[Point]) -> list[Bifurcation[Point]]:
         """Locate all bifurcations in a step, in order, up to the first that ends the branch."""
         tested = [kind for kind in self.kinds if kind in self.ending_kinds]
         ends = self.locate_bifurcations_of(step, tested)[:1]
@@ -168,46 +173,15 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
 
     def locate_bifurcations_of(
         self, step: BranchStep[Point], kinds: Sequence[Kind]
-    ) -> list[LocatedBifurcation[Point]]:
+    ) -> list[Bifurcation[Point]]:
         """Locate the confirmed bifurcations of given kinds in a step; return them in order."""
-        crossings = [
-            LocatedBifurcation(kind, *step.solve_for_level(kind, *bracket))
-            for kind in kinds
-            for bracket in step.sign_change_brackets(kind)
-        ]
-        parts = [each.position / step.length for each in crossings]
-        pairs = zip(crossings, parts, strict=True)
-        confirmed = [
-            each for each, part in pairs if self.zero_is_bifurcation(each.kind, each.point, part)
-        ]
+        confirmed = []
+        for kind in kinds:
+            for bracket in step.sign_change_brackets(kind):
+                position, point = step.solve_for_level(kind, *bracket)
+                if self.zero_is_bifurcation(kind, point, position / step.length):
+                    confirmed.append(Bifurcation(kind, position, point))
         return sorted(confirmed, key=lambda each: each.position)
-
-    def append_step(
-        self,
-        segment: BranchSegment[Point],
-        step: BranchStep[Point],
-        located: Sequence[LocatedBifurcation[Point]],
-    ) -> None:
-        """Append a step's bifurcations and last points to a segment, and the reason if it ends."""
-        for each in located:
-            ends = each.kind in self.ending_kinds
-            part = 1.0 if ends else each.position / step.length
-            segment.add_bifurcation(each.kind, each.point, part)
-            if ends:
-                segment.points.append(each.point)
-                segment.end = KINDS[each.kind]
-                return
-        segment.points += step.last_points
-        segment.end = step.end
-
-
-@dataclass(frozen=True)
-class LocatedBifurcation(Generic[Point]):
-    """A bifurcation located in a step: its kind, arclength from the step's start, and point."""
-
-    kind: Kind
-    position: float
-    point: Point
 
 
 @dataclass
@@ -215,8 +189,7 @@ class BranchStep(Generic[Point]):
     """One continuation step between two points, with the points solved for in between."""
 
     tracer: BranchTracer[Any, Point]  # whose stepper is at the step's begin
-    # at the step's ends
-    before: Point
+    before: Point  # at the step's ends
     after: Point
     length: float
     at_limit: bool = False  # whether it ends at a limit of a parameter
@@ -240,44 +213,40 @@ class BranchStep(Generic[Point]):
         value = self.tracer.test_function(self.point(position), kind)
         return value if np.isfinite(value) else 1.0
 
+    def end_values(self, kind: Kind) -> tuple[float, float]:
+        """Return a kind's test function at the step's begin and end."""
+        value = self.tracer.test_function
+        return value(self.before, kind), value(self.after, kind)
+
     def sign_change_brackets(self, kind: Kind) -> list[tuple[float, float]]:
         """Return intervals of the step in which a kind's test function changes sign."""
-        before, after = (
-            self.tracer.test_function(point, kind) for point in (self.before, self.after)
-        )
+        before, after = self.end_values(kind)
         if before * after < 0.0:
             return [(0.0, self.length)]
-        if self.tracer.finds_pairs and self.may_cross_twice(kind):
-            from scipy.optimize import minimize_scalar
+        if not self.tracer.finds_pairs or self.length <= ACCURACY:
+            return []
+        # it may cross zero twice: where its size falls and then rises, and reaches zero if it
+        # changes twice as fast as in the step before
+        if not abs(before) < 2.0 * abs(self.rates.get(kind, np.inf)) * self.length:
+            return []
+        sign = np.sign(before)
+        if not sign * self.end_slope(0.0, kind) < 0.0 < sign * self.end_slope(self.length, kind):
+            return []
+        from scipy.optimize import minimize_scalar
 
-            sign = np.sign(self.tracer.test_function(self.before, kind))
-            minimum = minimize_scalar(
-                lambda position: sign * self.test_function(float(position), kind),
-                bounds=(0.0, self.length),
-                method="bounded",
-                options={"xatol": 1e-6 * self.length},
-            )
-            middle = float(minimum.x)
-            if before * self.test_function(middle, kind) < 0.0:
-                return [(0.0, middle), (middle, self.length)]
-        return []
-
-    def may_cross_twice(self, kind: Kind) -> bool:
-        """Return whether a test function may cross zero twice: its size falls, then rises."""
-        value = self.tracer.test_function(self.before, kind)
-        # it may change twice as fast as in the step before
-        reach = 2.0 * abs(self.rates.get(kind, np.inf)) * self.length
-        if self.length <= ACCURACY or not abs(value) < reach:
-            return False
-        sign = np.sign(value)
-        falls, rises = (sign * self.end_slope(end, kind) for end in (0.0, self.length))
-        return bool(falls < 0.0 < rises)
+        minimum = minimize_scalar(
+            lambda position: sign * self.test_function(float(position), kind),
+            bounds=(0.0, self.length),
+            method="bounded",
+            options={"xatol": 1e-6 * self.length},
+        )
+        middle = float(minimum.x)
+        crosses = before * self.test_function(middle, kind) < 0.0
+        return [(0.0, middle), (middle, self.length)] if crosses else []
 
     def mean_slope(self, kind: Kind) -> float:
         """Return a test function's mean slope over the step; infinite where it is not finite."""
-        after, before = (
-            self.tracer.test_function(point, kind) for point in (self.after, self.before)
-        )
+        before, after = self.end_values(kind)
         change = after - before
         return change / self.length if np.isfinite(change) and self.length else np.inf
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import TURN
 from .closed_form import OUTER, Floats
-from .periodic_orbit import PHASE, PeriodicOrbit
+from .periodic_orbit import PHASE, ImpactSequence, PeriodicOrbit
 
 XI_1, XI_2, GAP = range(3)  # quantities that turn, as weights of the two masses
 WEIGHTS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]])
@@ -22,10 +23,9 @@ class TurningPoints:
 
     segment: NDArray[np.int_]
     quantity: NDArray[np.int_]
-    # phase in rad; value and second derivative of the quantity by tau
-    phase: Floats
+    phase: Floats  # rad
     value: Floats
-    curvature: Floats
+    curvature: Floats  # second derivative of the quantity by tau
 
 
 def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
@@ -38,9 +38,8 @@ def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
     part = (number_in_segment + 0.5) / counts[segment]
     if not orbit.node_count:  # a segment that closes: once around, and to the first sample again
         segment, part = np.append(segment, 0), np.append(part, part[0] + 1.0)
-    return segment, orbit.begin_phases[segment] + part * (orbit.end_phases - orbit.begin_phases)[
-        segment
-    ]
+    spans = orbit.end_phases - orbit.begin_phases
+    return segment, orbit.begin_phases[segment] + part * spans[segment]
 
 
 def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
@@ -53,18 +52,15 @@ def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
     which, quantity = np.nonzero(turns)
     low, high, segment = phase[which], phase[which + 1], segment[which]
     first, last = rates[which, quantity], rates[which + 1, quantity]
+    motion = partial(rate_curvature_and_value, orbit, segment, quantity)
     phases = low + (high - low) * first / (first - last)
-
-    def rate_and_slope(phase: Floats) -> tuple[Floats, Floats]:
-        return rate_curvature_and_value(orbit, segment, quantity, phase)[:2]
-
-    phases = refine_zeros(rate_and_slope, phases, (low, high), orbit.form.eta)
-    _, curvature, value = rate_curvature_and_value(orbit, segment, quantity, phases)
+    phases = refine_zeros(lambda phase: motion(phase)[:2], phases, (low, high), orbit.form.eta)
+    _, curvature, value = motion(phases)
     return TurningPoints(segment, quantity, phases, value, curvature)
 
 
 def refine_zeros(
-    rate_and_slope: Callable[[Floats], tuple[Floats, Floats]],
+    rate_and_slope: Callable[[Floats], Sequence[Floats]],
     phases: Floats,
     brackets: tuple[Floats, Floats],
     eta: float,
@@ -87,30 +83,27 @@ def rate_curvature_and_value(
     return rate, curvature, (weights * state[:, :2]).sum(axis=1)
 
 
-@dataclass(frozen=True)
-class Amplitudes:
-    """Largest displacements of both masses and largest gap over an orbit, in units of a eta^2."""
-
-    # largest absolute displacement of each mass
-    xi_1: float
-    xi_2: float
-    gap: float  # largest gap
-
-    @classmethod
-    def from_orbit(cls, orbit: PeriodicOrbit, turns: TurningPoints) -> Amplitudes:
-        origins = np.array([0.0, orbit.form.gap_offset, 0.0])  # of unloaded springs, and no gap
-        ends = np.abs(orbit.end_states[:, :2] - origins[:2]).max(axis=0)
-        inside = [
-            np.abs(turns.value[turns.quantity == which] - origins[which]) for which in range(3)
-        ]
-        largest = [max(values, default=0.0) for values in inside]
-        reaches = orbit.sequence.outer.any() or (orbit.modes == OUTER).any()
-        gap = orbit.form.limit if reaches else float(largest[GAP])
-        return cls(max(ends[0], largest[0]), max(ends[1], largest[1]), gap)
+def amplitudes(
+    orbit: PeriodicOrbit, turns: TurningPoints | None = None
+) -> tuple[float, float, float]:
+    """Return the largest distance of both masses and the largest gap over an orbit, in xi."""
+    turns = turns or turning_points(orbit)
+    origins = np.array([0.0, orbit.form.gap_offset, 0.0])  # of unloaded springs, and no gap
+    ends = np.abs(orbit.end_states[:, :2] - origins[:2]).max(axis=0)
+    xi_1, xi_2, gap = (
+        np.abs(turns.value[turns.quantity == which] - origins[which]).max(initial=0.0)
+        for which in (XI_1, XI_2, GAP)
+    )
+    if orbit.sequence.outer.any() or (orbit.modes == OUTER).any():
+        gap = orbit.form.limit
+    return max(ends[0], xi_1), max(ends[1], xi_2), float(gap)
 
 
-def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int, float]:
+def nearest_miss(
+    orbit: PeriodicOrbit, turns: TurningPoints | None = None
+) -> tuple[float, int, float]:
     """Return the smallest gap to an end in flights without a strike (inf: none), segment, phase."""
+    turns = turns or turning_points(orbit)
     inner = np.where(turns.curvature > 0.0, turns.value, np.inf)
     room = np.where(turns.curvature < 0.0, orbit.form.limit - turns.value, inner)
     room[turns.quantity != GAP] = np.inf
@@ -132,12 +125,10 @@ def weakest_force(orbit: PeriodicOrbit) -> tuple[float, int, float]:
     if not turns.any():
         return np.inf, -1, 0.0
     low, high, segment = phase[:-1][turns], phase[1:][turns], segment[1:][turns]
-
-    def rate_and_slope(phase: Floats) -> tuple[Floats, Floats]:
-        return contact_pressure_and_derivatives(orbit, segment, phase)[1:]
-
-    phases = refine_zeros(rate_and_slope, 0.5 * (low + high), (low, high), orbit.form.eta)
-    forces = contact_pressure_and_derivatives(orbit, segment, phases)[0]
+    pressure = partial(contact_pressure_and_derivatives, orbit, segment)
+    middle = 0.5 * (low + high)
+    phases = refine_zeros(lambda at: pressure(at)[1:], middle, (low, high), orbit.form.eta)
+    forces = pressure(phases)[0]
     lowest = forces.argmin()
     return float(forces[lowest]), int(segment[lowest]), float(phases[lowest])
 
@@ -146,21 +137,15 @@ def contact_pressure_and_derivatives(
     orbit: PeriodicOrbit, segment: NDArray[np.int_], phase: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Return the contact pressure -f (18) and its first two tau derivatives, at phases."""
-    form, modes, (state, rates) = (
-        orbit.form,
-        orbit.modes[segment],
-        orbit.states_and_rates(segment, phase),
-    )
-    outer = modes == OUTER
-    position, velocity = state[:, 0], state[:, 2]
-    acceleration = rates[:, 2]
+    form, outer = orbit.form, orbit.modes[segment] == OUTER
+    state, rates = orbit.states_and_rates(segment, phase)
+    position, velocity, acceleration = state[:, 0], state[:, 2], rates[:, 2]
     jerk = form.drive[2] * form.eta * np.cos(phase) - 2.0 * form.damping[2] * acceleration
     jerk -= form.stiffness[2] * velocity
     first = form.motion_part_of_contact_force(velocity, acceleration, outer)
     first = first + form.eta * form.harmonic_part_of_force(phase + 0.5 * np.pi, outer)
-    second = form.motion_part_of_contact_force(
-        acceleration, jerk, outer
-    ) - form.eta**2 * form.harmonic_part_of_force(phase, outer)
+    second = form.motion_part_of_contact_force(acceleration, jerk, outer)
+    second = second - form.eta**2 * form.harmonic_part_of_force(phase, outer)
     return -form.contact_force(phase, position, velocity, outer), -first, -second
 
 
@@ -173,11 +158,11 @@ def stroboscopic_states(orbit: PeriodicOrbit, phase: float = 0.0) -> Floats:
     return orbit.states(segment, shifted)
 
 
-def rotate_to_phase_zero(nodes: Floats, periods: int) -> tuple[Floats, int]:
-    """Reorder nodes to begin at phase 0; return them, and the old index of the first one."""
-    phase = np.mod(nodes[:, PHASE], TURN * periods)
+def rotate_to_phase_zero(sequence: ImpactSequence, nodes: Floats) -> tuple[ImpactSequence, Floats]:
+    """Return an orbit's impacts and nodes in their order from phase 0 on."""
+    phase = np.mod(nodes[:, PHASE], TURN * sequence.periods)
     first = int(phase.argmin()) if len(nodes) else 0
     ordered = np.roll(nodes, -first, axis=0)
-    if len(nodes):
-        ordered[:, PHASE] = np.roll(phase, -first)
-    return ordered, first
+    ordered[:, PHASE] = np.roll(phase, -first)
+    kinds = (*sequence.kinds[first:], *sequence.kinds[:first])
+    return ImpactSequence(sequence.periods, kinds), ordered

@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import math
 from ctypes import c_bool, c_double, c_int, c_size_t, c_void_p
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -37,16 +37,8 @@ def exponent_library() -> Any:
     return loaded
 
 
-class LibraryArguments(NamedTuple):
-    """Addresses of what the library takes of impacts, and the arrays that have to stay."""
-
-    span: tuple[Any, ...]  # structure and excitation, impacts, how many, their end
-    memory: Floats
-    kept: tuple[Any, ...]
-
-
-def library_arguments(impacts: Impacts, end: float, point: Point) -> LibraryArguments:
-    """Return a call's arguments about non-dimensional impacts up to an end in tau."""
+def library_arguments(impacts: Impacts, end: float, point: Point) -> tuple[Any, ...]:
+    """Return a call's arguments about non-dimensional impacts up to an end in tau, and memory."""
     structure, excitation = point
     values = [float(getattr(structure, name)) for name in DEVIATING]
     box = excitation.amplitude, excitation.frequency
@@ -55,8 +47,7 @@ def library_arguments(impacts: Impacts, end: float, point: Point) -> LibraryArgu
     columns = impacts.time / omega, states, impacts.closing * point.velocity_unit, impacts.sticks
     rows, count = np.column_stack(columns).astype(float), len(impacts.time)
     memory = np.empty(exponent_library().exponent_size(count))
-    span = numbers.ctypes.data, rows.ctypes.data, count, end / omega
-    return LibraryArguments(span, memory, (numbers, rows))
+    return numbers.ctypes, rows.ctypes, count, end / omega, memory  # arrays stay while these do
 
 
 def period_in_tau(eta: float) -> float:
@@ -68,9 +59,9 @@ def deviation_matrices_and_contacts(
     impacts: Impacts, end: float, point: Point
 ) -> tuple[Floats, Floats]:
     """Return matrices (n, 4, 4) from before an impact to before the next; contacts in tau."""
-    arguments, count = library_arguments(impacts, end, point), len(impacts.time)
-    memory = arguments.memory
-    first = exponent_library().find_deviations(*arguments.span, memory.ctypes.data)
+    *arguments, memory = library_arguments(impacts, end, point)
+    count = len(impacts.time)
+    first = exponent_library().find_deviations(*arguments, memory.ctypes)
     last = first + 16 * count
     return memory[first:last].reshape(count, 4, 4), memory[last : last + count]
 

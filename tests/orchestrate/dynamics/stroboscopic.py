@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from orchestrate.fmu import OSCILLATOR, STATE, EventInstance, find_or_export, start_motion
+from orchestrate.fmu import STATE, start_motion
 
 
 def after(instance, point, start, periods=1):
@@ -12,28 +12,15 @@ def after(instance, point, start, periods=1):
     return np.array(instance.get(*STATE))
 
 
-def flown(structure, excitation, states, periods=1):
-    """States of the FMU some periods after states at phase 0."""
-    ends = []
-    with EventInstance(find_or_export(OSCILLATOR).path) as instance:
-        for state in np.atleast_2d(states):
-            start_motion(instance, structure, excitation, state)
-            instance.record_impacts(0.0, periods * excitation.period)
-            ends.append(instance.read("x1", "x2", "v1", "v2").copy())
-    return np.array(ends)
+def moving(point):
+    """Coordinates of the state that may deviate: those of mass 1 alone beside a wall."""
+    return slice(0, 4, 2 if point.structure.wall else 1)
 
 
-def assert_multipliers(found, structure, excitation, periods=1, within=1e-5):
-    """An orbit's multipliers are eigenvalues of the map's derivative there."""
-    omega, state = structure.omega, found.state.values[0]
-    scale = np.array([1.0, 1.0, omega, omega])
-    scale *= excitation.amplitude or excitation.length(structure)
-    moving = slice(0, 4, 2 if structure.wall else 1)
-    steps = 1e-6 * np.diag(scale)[moving]
-    ends = [flown(structure, excitation, state + sign * steps, periods) for sign in (1.0, -1.0)]
-    columns = (ends[0] - ends[1])[:, moving]
-    seen = np.append(
-        np.linalg.eigvals(columns.T / scale[moving, None] / 2e-6), [0.0] * structure.wall
-    )
-    for multiplier in found.multipliers.values @ [1.0, 1.0j]:
-        assert np.abs(seen - multiplier).min() < within * max(1.0, np.abs(seen).max())
+def differences(instance, point, start, periods=1):
+    """Central differences of the state after some periods: the matrix through the FMU alone."""
+    units, own = point.state_units, moving(point)
+    step = 1e-7 * np.abs(start / units).max()
+    moves = step * np.diag(units)[own]
+    ends = [[after(instance, point, start + k * d, periods) for d in moves] for k in (1, -1)]
+    return np.subtract(*ends).T[own] / units[own, None] / (2.0 * step)

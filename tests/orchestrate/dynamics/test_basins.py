@@ -1,7 +1,6 @@
 """Basins: what the coordinates of a plane mean, and that each start leads where it says."""
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -9,10 +8,12 @@ import xarray as xr
 
 import orchestrate
 from orchestrate.dynamics.attractors import attractors
-from orchestrate.dynamics.basins import Plane, PlaneAxis, basin
-from orchestrate.fmu import OSCILLATOR, REST, STATE, Instance, find_or_export, start_motion
+from orchestrate.dynamics.basins import PlaneAxis, basin, starts_of_plane
+from orchestrate.fmu import REST
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
+
+from .stroboscopic import after
 
 PAPER = Structure.nondimensional()
 ETA = 1.315
@@ -22,7 +23,7 @@ SIDES = {"x": ("x_rel", -0.4, 1.2, 5), "y": ("v_rel", -1.0, 1.0, 4)}
 
 
 def starts(x, y, at=AT):
-    states, phases = Plane(POINT, PlaneAxis(*x), PlaneAxis(*y), at).states_and_phases()
+    states, phases = starts_of_plane(POINT, PlaneAxis(*x), PlaneAxis(*y), at)
     return states.reshape(y[3], x[3], 4), phases.reshape(y[3], x[3])
 
 
@@ -51,34 +52,27 @@ def test_starts_that_overlap_count_in_no_share(found):
     assert float(found.share.sum()) == pytest.approx(1.0)
 
 
-@pytest.mark.usefixtures("exported")
-def test_responses_of_a_plane_at_another_phase_are_those_of_its_starts():
+def test_responses_of_a_plane_at_another_phase_are_those_of_its_starts(instances):
     """Labels and states were those of another excitation at any phase but 0."""
     plane = {"x": ("x_rel", 0.0, 1.3, 4), "y": ("v_rel", -1.3, 1.3, 4)}
     found = basin(PAPER, eta=ETA, phase=1.0, **plane)
     excitation = Excitation.nondimensional(ETA, PAPER, phase=1.0)
     states, _ = starts(plane["x"], plane["y"], REST)
     labels = found.attractor_of.values
-    with Instance(find_or_export(OSCILLATOR).path) as instance:
-        for state, label in zip(states.reshape(-1, 4), labels.ravel(), strict=True):
-            n = int(found.multiplicity[label])
-            assert returns_after(instance, excitation, state, 3000) == n
-        still = excitation.replace(phase=0.0)
-        for state, n in zip(found.state.values, found.multiplicity.values, strict=True):
-            assert returns_after(instance, still, state, 0) == n
+    for state, label in zip(states.reshape(-1, 4), labels.ravel(), strict=True):
+        n = int(found.multiplicity[label])
+        assert returns_after(instances[0], excitation, state, 3000) == n
+    still = excitation.replace(phase=0.0)
+    for state, n in zip(found.state.values, found.multiplicity.values, strict=True):
+        assert returns_after(instances[0], still, state, 0) == n
     assert set(found.multiplicity.values) == {1.0, 2.0}
 
 
 def returns_after(instance, excitation, state, transient):
     """After how many periods, 1 or 2, a motion is back where it is after a transient; else 0."""
-    start_motion(instance, PAPER, excitation, state)
-    instance.step(0.0, transient * excitation.period)
-    done = [transient, transient + 1, transient + 2]
-    points = [instance.get(*STATE)]
-    for first, last in pairwise(done):
-        instance.step(first * excitation.period, last * excitation.period)
-        points.append(instance.get(*STATE))
-    apart = np.abs(np.array(points[1:]) - points[0]).max(axis=1)
+    point = Point(PAPER, excitation)
+    first = after(instance, point, state, transient) if transient else state
+    apart = [np.abs(after(instance, point, first, n) - first).max() for n in (1, 2)]
     return next((n for n, most in enumerate(apart, 1) if most < 1e-6), 0)
 
 
@@ -100,41 +94,33 @@ def test_the_default_plane_holds_the_attractors_and_shows_both_basins(monkeypatc
     assert 0.5 < float(found.x_rel.max()) / scale < 2.0  # of the size of the motion
 
 
-def basins(labels):
-    return xr.Dataset({"attractor_of": (("v_rel", "x_rel"), np.asarray(labels, dtype=np.int16))})
+X, Y = np.meshgrid(np.linspace(-2.0, 2.0, 400), np.linspace(-2.0, 2.0, 400))
 
 
-def plane(count):
-    return np.meshgrid(np.linspace(-2.0, 2.0, count), np.linspace(-2.0, 2.0, count))
-
-
-def newton(count):
-    """Which root of z^3 = 1 Newton's method leads to."""
-    x, y = plane(count)
-    z = x + 1j * y
-    for _ in range(40):
-        z = z - (z**3 - 1.0) / (3.0 * z**2)
-    roots = np.exp(2j * np.pi * np.arange(3) / 3.0)
-    return np.abs(z[..., np.newaxis] - roots).argmin(axis=-1)
+def basin_entropy(labels):
+    basins = {"attractor_of": (("v_rel", "x_rel"), np.asarray(labels, dtype=np.int16))}
+    return orchestrate.basin_entropy(xr.Dataset(basins))
 
 
 def test_a_smooth_boundary_is_a_line():
-    x, y = plane(600)
-    found = orchestrate.basin_entropy(basins(x + 0.31 * y > 0.123))
+    found = basin_entropy(X + 0.31 * Y > 0.123)
     assert float(found.uncertainty_exponent) == pytest.approx(1.0, abs=0.05)
     assert float(found.boundary_dimension) == pytest.approx(1.0, abs=0.05)
     assert float(found.boundary_basin_entropy) < math.log(2.0)
 
 
 def test_the_basins_of_newtons_method_are_fractal():
-    """The dimension of their boundary is 1.42 to 1.44 (Nusse and Yorke; Daza and others)."""
-    found = orchestrate.basin_entropy(basins(newton(600)))
+    """Of z^3 = 1: their boundary has the dimension 1.42 to 1.44 (Nusse and Yorke; Daza et al.)."""
+    z, roots = X + 1j * Y, np.exp(2j * np.pi * np.arange(3) / 3.0)
+    for _ in range(40):
+        z = z - (z**3 - 1.0) / (3.0 * z**2)
+    found = basin_entropy(np.abs(z[..., np.newaxis] - roots).argmin(axis=-1))
     assert float(found.boundary_dimension) == pytest.approx(1.43, abs=0.04)
     assert float(found.boundary_basin_entropy) > math.log(2.0)
 
 
 def test_one_basin_has_no_boundary():
-    found = orchestrate.basin_entropy(basins(np.zeros((40, 40))))
+    found = basin_entropy(np.zeros((40, 40)))
     assert float(found.basin_entropy) == 0.0
     assert math.isnan(float(found.boundary_basin_entropy))
     assert math.isnan(float(found.uncertainty_exponent))

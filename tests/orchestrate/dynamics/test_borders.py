@@ -80,7 +80,7 @@ def test_a_fold_is_found_from_either_side_of_it(monkeypatch, beyond):
     job = border(FOLDED, start=start, bifurcation=at, **question)
     job = replace(job, values=(value + beyond, 0.7))
     curve, root = borders.solve_start_on_curve(job)
-    assert root.unknowns[curve.first_parameter_index :] == pytest.approx([value, 0.7], abs=1e-11)
+    assert root.unknowns[curve.family.node_unknowns :] == pytest.approx([value, 0.7], abs=1e-11)
 
 
 DAMPED = Structure(d1=0.1, d2=0.12, e=0.5)
@@ -99,8 +99,8 @@ def test_a_border_begins_where_an_open_structure_touches():
     steady = Point(wide, Excitation(**BOX)).states_from_faces(form.steady_response(np.zeros(1)))
     apart = orchestrate.orbit(wide, **BOX, guess=steady[0])  # from rest it impacts: another branch
     assert float(apart.impacts_per_period) == 0.0
-    limits = (0.9 * touching, 1.4 * touching)
-    found = orchestrate.branch(wide, start=apart, over="clearance", limits=limits)
+    along = {"over": "clearance", "limits": (0.9 * touching, 1.4 * touching), "longest": 0.3}
+    found = orchestrate.branch(wide, start=apart, **along)
     assert found.bifurcation_value.values == pytest.approx([touching], rel=1e-9)
     limits = [(0.5 * touching, 1.4 * touching), (0.6, 1.3)]
     asked = {"over": ("clearance", "amplitude"), "limits": limits, "longest": 0.1}

@@ -13,7 +13,7 @@ from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.branches import branch, complete_excitation
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.flags import flag_words
-from orchestrate.fmu import OSCILLATOR, EventInstance, find_or_export, start_motion
+from orchestrate.fmu import start_motion
 from orchestrate.model import Excitation, Structure
 from orchestrate.response import questions
 
@@ -64,7 +64,7 @@ def test_period_doubling_against_a_wall():
     structure = Structure(d1=0.0, e=0.8, wall=True)
     start = orbit(structure, eta=2.5, guess={"impact_time": [2.0]})
     for over, pushed in (("box_acceleration", {}), ("clearance", {"clearance": 1e-3})):
-        given = {"start": start, "over": over, "limits": (0.0, 0.1)}
+        given = {"start": start, "over": over, "limits": (0.0, 0.1), "longest": 0.3}
         found = branch(structure.replace(**pushed), **given)
         assert np.abs(values(found, FLIP) - 0.07667521).min() < 1e-8
 
@@ -123,27 +123,26 @@ def test_an_orbit_with_one_impact_more_leaves_at_a_grazing():
     first = windows(2)
     assert first.attrs["first_end"] == "grazing of a flight" != first.attrs["last_end"]
     number = int(np.flatnonzero(first.bifurcation_kind.values == TOUCHING)[0])
-    found = branch(PAPER, start=first, switch=number, limits=(1.37, 9.5))
+    found = branch(PAPER, start=first, switch=number, limits=(1.37, 9.5), longest=0.1)
     assert ((found.node_kind.values == 0).sum(axis=1) == 2).all()
     assert found.node_closing.values[0].min() == pytest.approx(0.0, abs=1e-12)
     assert (found.node_closing.values[1:].min(axis=1) > 0.0).all()
     assert found.fmu_same_impacts.values[1:-1].all()
     fold = found.isel(bifurcation=found.bifurcation_kind.values == FOLD)
     assert fold.sizes["bifurcation"] == 1
-    assert fold.bifurcation_value.item() == pytest.approx(found.eta.values.max(), abs=1e-5)
+    assert 0.0 <= fold.bifurcation_value.item() - found.eta.values.max() < 1e-3
     assert np.abs(fold.bifurcation_multipliers.values[0] @ [1, 1j] - 1.0).min() < 1e-6
 
 
 @pytest.mark.slow
-def test_permanent_contact_is_followed_until_it_is_lost():
+def test_permanent_contact_is_followed_until_it_is_lost(instances):
     found = branch(PAPER, eta=0.413, limits=(0.412, 0.43))
     assert found.attrs["last_end"] == "loss of permanent contact"
     assert found.permanent_contact.values.all()
     assert found.fmu_same_impacts.values.mean() > 0.95
     (lost,) = values(found, CONTACT_LOST)
-    with EventInstance(find_or_export(OSCILLATOR).path) as instance:
-        assert contacts(instance, lost - 1e-5, found) > 0
-        assert contacts(instance, lost + 1e-5, found) == 0
+    assert contacts(instances[1], lost - 1e-5, found) > 0
+    assert contacts(instances[1], lost + 1e-5, found) == 0
 
 
 def contacts(instance, eta, found):

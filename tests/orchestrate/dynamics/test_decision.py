@@ -61,24 +61,18 @@ def test_impacts_are_counted_from_a_pause(monkeypatch):
     assert count_impacts_starting_in_pause(instance, point, REST, 1) == 1
 
 
-def test_starts_that_come_to_a_known_orbit_are_not_run_on():
+def test_starts_that_come_to_a_known_orbit_are_not_run_on(instances):
     """They lead where they lead alone."""
     gap, rate = np.random.default_rng(3).uniform([[0.0], [-1.3]], 1.3, (2, 12)) / 2.0
     starts = np.column_stack([-gap, gap, -rate, rate])
     alone = [decided_from(PAPER, 1.315, start)[0] for start in starts]
-    with (
-        Instance(find_or_export(OSCILLATOR).path) as plain,
-        EventInstance(find_or_export(OSCILLATOR).path) as eventful,
-    ):
-        decider = MotionDecider(plain, eventful, point_of(PAPER, 1.315), USUAL)
-        together = decider.decide_all(starts)
-        again = run_until_settled(plain, decider.point, starts, USUAL, decider.known)
+    decider = MotionDecider(*instances, point_of(PAPER, 1.315), USUAL)
+    together = decider.decide_all(starts)
+    again = run_until_settled(decider.plain, decider.point, starts, USUAL, decider.known)
     assert len({motion.multiplicity for motion in alone}) == 2
     for one, (motion, state, _) in zip(alone, together, strict=True):
-        assert (
-            motion.multiplicity == one.multiplicity
-            and motion.nearest_state(one.state_of_least_x1)[1] < 1e-9
-        )
+        assert motion.multiplicity == one.multiplicity
+        assert motion.nearest_state(one.state_of_least_x1)[1] < 1e-9
         assert (motion.states == state).all(axis=1).any()
     assert all(isinstance(each, ReachedMotion) for each in again)
     assert [each.motion for each in again] == [motion for motion, *_ in together]
@@ -109,6 +103,9 @@ class Scripted(MotionDecider):
     def converges_to(self, state, motion, n):
         return self.comes
 
+    def start(self, instance, state, phase=0.0):
+        pass
+
 
 @pytest.mark.parametrize(
     ("decided", "distance", "comes", "known"),
@@ -135,27 +132,27 @@ def test_each_threshold_of_a_known_motion(decided, distance, comes, known):
         *((0.05, 0.05 * 16.9 / 32.0, True), (0.05, 0.05 * 17.1 / 32.0, False)),
     ],
 )
-def test_each_threshold_of_a_response_that_comes_to_an_orbit(monkeypatch, before, after, comes):
-    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
+def test_each_threshold_of_a_response_that_comes_to_an_orbit(before, after, comes):
     decider = Scripted(path=(before, after))
     assert MotionDecider.converges_to(decider, REST, decider.motion(), 1) == comes
     periods = sum(decider.steps) / decider.point.excitation.period
     assert not decider.steps or periods == pytest.approx(4.0)  # a tenth is left by then
 
 
-def test_a_response_that_comes_to_another_state_is_on_another_orbit(monkeypatch):
-    """One of 6 periods is nearer to one of 32 at some phases than at others."""
-    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
-    for places in ((1, 1), (1, 2)):
-        decider = Scripted(path=(0.05, 0.01), places=places)
-        assert MotionDecider.converges_to(decider, REST, decider.motion(), 1) == (places == (1, 1))
-
-
-@pytest.mark.parametrize(("left", "comes"), [(0.99e-9, True), (1.01e-9, False)])
-def test_what_rounding_leaves_of_a_deviation_does_not_count(monkeypatch, left, comes):
-    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
-    decider = Scripted(path=(1e-9, left), same=1e-12)
-    assert MotionDecider.converges_to(decider, REST, decider.motion(multiplier=1e-9), 1) == comes
+@pytest.mark.parametrize(
+    ("script", "multiplier", "comes"),
+    [
+        # to another of its states: one of 6 periods is nearer to one of 32 at some phases
+        *(({"path": (0.05, 0.01), "places": (1, at)}, 0.5, at == 1) for at in (1, 2)),
+        # what rounding leaves of a deviation does not count
+        ({"path": (1e-9, 0.99e-9), "same": 1e-12}, 1e-9, True),
+        ({"path": (1e-9, 1.01e-9), "same": 1e-12}, 1e-9, False),
+    ],
+)
+def test_where_a_response_is_after_it_has_been_watched(script, multiplier, comes):
+    decider = Scripted(**script)
+    motion = decider.motion(multiplier=multiplier)
+    assert MotionDecider.converges_to(decider, REST, motion, 1) == comes
 
 
 @pytest.mark.parametrize(
@@ -167,8 +164,7 @@ def test_what_rounding_leaves_of_a_deviation_does_not_count(monkeypatch, left, c
         *((1e-9, 1, 99, 2, 2), (0.9, 1, 99, 24, 3), (0.9, 2, 99, 44, 4), (1e-9, 6, 99, 6, 3)),
     ],
 )
-def test_how_long_a_response_is_watched(monkeypatch, multiplier, n, longest, periods, own):
-    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
+def test_how_long_a_response_is_watched(multiplier, n, longest, periods, own):
     turns = Scripted(path=(0.05, 0.0), longest=longest)
     motion = turns.motion(multiplier=multiplier, multiplicity=n)
     MotionDecider.converges_to(turns, REST, motion, own)
@@ -188,10 +184,8 @@ def test_starts_are_compared_with_known_orbits_alone(monkeypatch):
 def test_a_response_has_an_orbit_that_it_comes_to_and_the_fmu_repeats(comes, repeats):
     decider = Scripted(comes)
     motion = decider.motion()
-    decider.solve_orbit_near, decider.motion_if_stable = (
-        lambda *asked: (motion, 0.0),
-        lambda *orbit: motion,
-    )
+    decider.solve_orbit_near = lambda *asked: (motion, 0.0)
+    decider.motion_if_stable = lambda *orbit: motion
     decider.repeats_in_fmu, decider.find_or_add = lambda motion: repeats, lambda motion: motion
     response = SimpleNamespace(multiplicity=1, end=REST)
     assert decider.find_periodic_motion(response) == (motion if comes and repeats else None, False)
@@ -219,8 +213,7 @@ def test_an_impact_at_the_sampled_phase_does_not_matter():
 
 
 @pytest.mark.parametrize(("away", "stays"), [(0.99e-5, True), (1.01e-5, False)])
-def test_each_threshold_of_a_run_that_stays_on_an_orbit(monkeypatch, away, stays):
-    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
+def test_each_threshold_of_a_run_that_stays_on_an_orbit(away, stays):
     decider = Scripted(path=(away,))
     assert decider.fmu_stays_on(decider.motion()) == stays
 
@@ -229,14 +222,12 @@ def test_each_threshold_of_a_run_that_stays_on_an_orbit(monkeypatch, away, stays
     ("away", "impacts", "period", "repeats"),
     [(0.99e-6, 1, 0, True), (1.01e-6, 1, 0, False), (0.0, 2, 0, False), (0.0, 1, 1, False)],
 )
-def test_an_orbit_is_one_to_which_the_fmu_returns(monkeypatch, away, impacts, period, repeats):
+def test_an_orbit_is_one_to_which_the_fmu_returns(away, impacts, period, repeats):
     """`returns`, with the same impacts and in the same period."""
-    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
     decider = Scripted()
     found = SimpleNamespace(time=[0.0] * impacts)
-    decider.eventful = SimpleNamespace(
-        record_impacts=lambda begin, end: found, read=lambda *names: None
-    )
+    runs = {"record_impacts": lambda begin, end: found, "read": lambda *names: None}
+    decider.eventful = SimpleNamespace(**runs)
     motion, ends = decider.motion(), iter([(0, 1.0), (period, away)])
     motion.orbit = SimpleNamespace(sequence=SimpleNamespace(impact_count=1))
     motion.states, motion.nearest_state_at_free_phase = [REST], lambda state: next(ends)
@@ -274,7 +265,6 @@ def test_a_guess_begins_in_the_middle_of_the_longest_pause(monkeypatch, times, b
     decider.system = SimpleNamespace(closed_form=lambda values: None)
     found = SimpleNamespace(time=np.array(times))
     decider.eventful = SimpleNamespace(record_impacts=lambda *span: spans.append(span) or found)
-    monkeypatch.setattr(decision, "start_motion", lambda *asked: None)
     monkeypatch.setattr(decision, "guess_from_impacts", lambda *given: given[0])
     guess, phase = decider.guess_and_free_phase(np.array(REST), 1)
     assert phase == pytest.approx(TURN / 6.0 * begun)
@@ -343,14 +333,13 @@ def test_chattering_that_ends_in_contact_is_decided_by_its_orbit(eta, e):
     assert motion.impacts_per_period == np.isfinite(confirmed.impact_time).sum()
 
 
-def test_impacts_are_whole_numbers_from_whatever_period_one_counts():
+def test_impacts_are_whole_numbers_from_whatever_period_one_counts(instances):
     motion, _ = decided_from(CONTACT, 3.0952, settings=settling_run(transient=2000))
     assert motion.multiplicity in (2, 11)
-    with Instance(find_or_export(OSCILLATOR).path) as instance:
-        counts = {
-            count_impacts_starting_in_pause(instance, motion.point, state, motion.multiplicity)
-            for state in motion.states
-        }
+    counts = {
+        count_impacts_starting_in_pause(instances[0], motion.point, state, motion.multiplicity)
+        for state in motion.states
+    }
     assert counts == {round(motion.impacts_per_period * motion.multiplicity)}
 
 
@@ -366,9 +355,8 @@ def test_what_stays_near_an_unstable_orbit_is_undecided_and_settles_when_run_on(
     damped = PAPER.replace(D=0.05)
     near = sweep(damped, eta=1.115, transient=3000, samples=10).end_state.values[0]
     start = orbit(damped, eta=1.116, guess=near).state.values[0]
-    early, _ = decided_from(
-        damped, 1.116, start, settling_run(transient=100, settle=1.0, longest=300)
-    )
+    short = settling_run(transient=100, settle=1.0, longest=300)
+    early, _ = decided_from(damped, 1.116, start, short)
     late, _ = decided_from(damped, 1.116, near)
     assert (early.decided, early.impacts_per_period) == (UNDECIDED, 1.0)
     assert (late.decided, late.multiplicity, late.impacts_per_period) == (ORBIT, 2, 1.5)

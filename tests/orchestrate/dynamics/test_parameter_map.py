@@ -1,5 +1,7 @@
 """Maps: each point is a response from the same start, in whatever unit and order."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -22,7 +24,7 @@ def found(exported):
     return map(SLOWER, eta=ETAS, e=ES, exponent=True, periods=100)
 
 
-@pytest.mark.parametrize(("count", "chunks"), [(50, 16), (2, 12), (1000, 50)])
+@pytest.mark.parametrize(("count", "chunks"), [(50, 16), (2, 12), (330, 17)])
 def test_a_map_of_few_points_is_stored_in_many_parts(count, chunks):
     given = (("eta", tuple(np.linspace(1.0, 2.0, count))), ("e", (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)))
     job = MapJob(name="map", structure=PAPER, start=(0.0,) * 4, given=given)
@@ -31,13 +33,11 @@ def test_a_map_of_few_points_is_stored_in_many_parts(count, chunks):
 
 def test_each_point_is_a_response_from_rest(found):
     assert found.multiplicity.dims == ("eta", "e")
-    for eta in ETAS:
-        for e in ES:
-            dropped = max(300, round(300 * eta))
-            swept = sweep(SLOWER.replace(e=e), eta=eta, transient=dropped, samples=60).isel(eta=0)
-            point = found.sel(eta=eta, e=e)
-            for name in ("impacts_per_period", "multiplicity", "xi_rel_max"):
-                assert float(point[name]) == float(swept[name]), name
+    for eta, e in itertools.product(ETAS, ES):
+        dropped = max(300, round(300 * eta))
+        swept = sweep(SLOWER.replace(e=e), eta=eta, transient=dropped, samples=60).isel(eta=0)
+        for name in ("impacts_per_period", "multiplicity", "xi_rel_max"):
+            assert float(found.sel(eta=eta, e=e)[name]) == float(swept[name]), name
 
 
 def test_responses_next_to_each_other_are_alike_where_a_mass_passes_zero_at_phase_zero():
@@ -54,15 +54,11 @@ def test_what_is_undecided_is_run_on():
     for where, n in zip(places, (8, 2), strict=True):  # by Newton's method
         assert int(stopped.multiplicity_decided.sel(where)) == UNDECIDED
         assert int(run_on.multiplicity_decided.sel(where)) == REPEATED
-        assert int(run_on.multiplicity.sel(where)) == n == orbit_of(where, n)
-
-
-def orbit_of(where, n):
-    """The period of the stable orbit that the response from rest settles to."""
-    structure = PAPER.replace(e=where["e"])
-    end = sweep(structure, eta=where["eta"], transient=20_000, samples=4).end_state.values[0]
-    found = orbit(structure, eta=where["eta"], period=n, guess=end)
-    return n if bool(found.stable) and float(found.fmu_return) < 1e-9 else 0
+        assert int(run_on.multiplicity.sel(where)) == n
+        structure, eta = PAPER.replace(e=where["e"]), where["eta"]  # the response from rest
+        end = sweep(structure, eta=eta, transient=20_000, samples=4).end_state.values[0]
+        found = orbit(structure, eta=eta, period=n, guess=end)
+        assert found.stable and found.fmu_return < 1e-9
 
 
 def test_the_largest_impulse_is_that_of_the_motion(found):

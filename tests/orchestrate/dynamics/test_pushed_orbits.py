@@ -7,17 +7,21 @@ import orchestrate
 from orchestrate.dynamics.bifurcation_kinds import Kind
 from orchestrate.errors import InputError
 from orchestrate.model import Excitation, Structure
+from orchestrate.response.questions import Point
 
 from ...draws import draw_structure
-from .stroboscopic import assert_multipliers, flown
+from .stroboscopic import after, differences
+from .test_branches import values
 
 QUICK = {"progress": False, "jobs": 1}
 PUSHES = "box_acceleration", "force1", "force2"
 
 
-def draw_pushed(random):
-    """A structure of 3 kg and 7 rad/s, an eta, and pushes of the size of the box's own; its
-    restitution may decrease with the closing speed.
+def draw_of_kind(random, kind):
+    """A structure of 3 kg and 7 rad/s and its excitation, with pushes of the size of the box's own.
+
+    Its restitution may decrease with the closing speed; it may be against a wall, in a play, or
+    both: the other end within reach.
     """
     drawn, eta = draw_structure(random)
     units = {"m": 3.0, "k": 3.0 * 49.0, "d": 3.0 * 7.0}
@@ -25,18 +29,15 @@ def draw_pushed(random):
     structure = drawn.replace(**{name: units[name[0]] * drawn.get(name) for name in names})
     structure = structure.replace(e_slope=float(random.choice([0.0, 0.1])))
     sizes = random.uniform(-1.5, 1.5, 3) * 49.0 * [1.0, structure.m1, structure.m2]
-    return structure, eta, dict(zip(PUSHES, map(float, sizes), strict=True))
-
-
-def draw_of_kind(random, kind):
-    """The same, against a wall, in a play, or both: the other end within reach."""
-    structure, eta, pushes = draw_pushed(random)
+    pushes = dict(zip(PUSHES, map(float, sizes), strict=True))
     structure = structure.replace(wall="wall" in kind)
+    if structure.wall:
+        pushes["force2"] = 0.0
     if "play" in kind:
         near = max(0.0, structure.clearance)
         structure = structure.replace(stroke=near + float(10.0 ** random.uniform(-1.0, 0.5)))
     box = {"frequency": eta * structure.omega, "amplitude": 0.0 if "rest" in kind else eta**-2.0}
-    return structure, box, pushes | {"force2": 0.0} if structure.wall else pushes
+    return structure, {**box, **pushes}
 
 
 KINDS = {  # how many orbits, and the kinds of nodes among them
@@ -46,26 +47,30 @@ KINDS = {  # how many orbits, and the kinds of nodes among them
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_orbits_of_random_structures_are_those_of_the_fmus_own_map(kind):
+def test_orbits_of_random_structures_are_those_of_the_fmus_own_map(instances, kind):
     """States after a period to 1e-10, multipliers by differences; permanent contact among them."""
     random, nodes, compared = np.random.default_rng(6), set(), 0
     while compared < KINDS[kind][0]:
-        structure, box, pushes = draw_of_kind(random, kind)
+        structure, excitation = draw_of_kind(random, kind)
         try:
-            found = orchestrate.orbit(structure, **box, **pushes, **QUICK)
+            found = orchestrate.orbit(structure, **excitation, **QUICK)
         except InputError as reason:
             assert "no orbit found" in str(reason)
             continue
-        excitation, state = Excitation(**box, **pushes), found.state.values[0]
+        point, state = Point(structure, Excitation(**excitation)), found.state.values[0]
         assert found.fmu_same_impacts
-        unit, largest = excitation.length(structure), np.hypot(*found.multipliers.values.T).max()
-        away = flown(structure, excitation, state)[0] - state
-        assert np.abs(away).max() < 1e-10 * unit * max(1.0, largest)
+        multipliers = found.multipliers.values @ [1.0, 1.0j]
+        away = after(instances[0], point, state) - state
+        largest = max(1.0, np.abs(multipliers).max())
+        assert np.abs(away).max() < 1e-10 * point.displacement_unit * largest
         nodes |= set(found.node_kind.values.tolist())
         gap = state[1] - state[0] + structure.gap_offset
         if min(gap, (structure.stroke or np.inf) - gap) > 1e-2 and found.node_kind.size:
             # in contact at phase 0 there is no neighbour beyond
-            assert_multipliers(found, structure, excitation, within=1e-6)
+            seen = np.linalg.eigvals(differences(instances[0], point, state))
+            seen = np.append(seen, [0.0] * structure.wall)
+            for multiplier in multipliers:
+                assert np.abs(seen - multiplier).min() < 1e-6 * max(1.0, np.abs(seen).max())
             compared += 1
     assert nodes >= KINDS[kind][1]
 
@@ -73,14 +78,10 @@ def test_orbits_of_random_structures_are_those_of_the_fmus_own_map(kind):
 OPEN = Structure.nondimensional(e=0.7, D=0.02, clearance=0.3)
 
 
-def bifurcations(found, kind):
-    return found.bifurcation_value.values[found.bifurcation_kind.values == kind]
-
-
 def test_sweeps_change_where_a_branch_with_a_force_folds_and_doubles():
     asked = {"force1": 0.4, "longest": 0.3, **QUICK}
     along = orchestrate.branch(OPEN, eta=1.2, over="eta", limits=(1.1, 1.31), **asked)
-    (flip,), (fold,) = bifurcations(along, Kind.FLIP), bifurcations(along, Kind.FOLD)
+    (flip,), (fold,) = values(along, Kind.FLIP), values(along, Kind.FOLD)
     etas = np.array([1.2, 1.13, flip + 4e-3, flip - 4e-3])
     run = {"direction": "given", "transient": 900, "samples": 40, "force1": 0.4, **QUICK}
     assert orchestrate.sweep(OPEN, eta=etas, **run).multiplicity.values.tolist() == [1, 1, 1, 2]
@@ -92,7 +93,7 @@ def test_sweeps_change_where_a_branch_with_a_force_folds_and_doubles():
     assert steps[:-1].max() < 0.1 * steps[-1]
     start = orchestrate.orbit(OPEN, eta=flip, force1=0.41, **QUICK)
     along = orchestrate.branch(OPEN, start=start, over="force1", limits=(0.38, 0.42), **QUICK)
-    assert bifurcations(along, Kind.FLIP) == pytest.approx([0.4], abs=1e-9)
+    assert values(along, Kind.FLIP) == pytest.approx([0.4], abs=1e-9)
     assert along.force1.values.min() == 0.38 and along.eta.values == pytest.approx(flip)
 
 
@@ -102,7 +103,7 @@ def test_a_branch_goes_on_with_impacts_at_the_outer_end_of_a_play():
     box, along = {"frequency": 1.6, "amplitude": 0.0}, {"over": "force1", "longest": 0.3, **QUICK}
     start = orchestrate.orbit(play, **box, force1=1.2, **QUICK)
     first = orchestrate.branch(play, start=start, limits=(1.0, 2.5), **along)
-    (touching,) = bifurcations(first, Kind.TOUCHING)
+    (touching,) = values(first, Kind.TOUCHING)
     other = orchestrate.branch(play, start=first, switch=0, limits=(1.0, 2.5), **along)
     assert set(first.node_kind.values.ravel()) == {0}
     assert first.attrs["last_end"] == "grazing of a flight"

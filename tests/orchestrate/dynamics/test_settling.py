@@ -8,7 +8,7 @@ import pytest
 from orchestrate.dynamics import settling
 from orchestrate.dynamics.settling import run_until_settled, transient_periods
 from orchestrate.errors import InputError
-from orchestrate.fmu import OSCILLATOR, REST, Instance, find_or_export
+from orchestrate.fmu import REST
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 
@@ -60,10 +60,9 @@ def test_each_threshold_of_a_response_that_is_run_on(
         (0.8, 0, 20_000, 21_000),  # chaos
     ],
 )
-def test_a_response_is_run_on_until_it_is_known(exported, eta, multiplicity, least, most):
+def test_a_response_is_run_on_until_it_is_known(instances, eta, multiplicity, least, most):
     point = Point(PAPER, Excitation.nondimensional(eta, PAPER))
-    with Instance(find_or_export(OSCILLATOR).path) as instance:
-        ((response, periods),) = run_until_settled(instance, point, REST, settling_run())
+    ((response, periods),) = run_until_settled(instances[0], point, REST, settling_run())
     assert response.multiplicity == multiplicity
     assert least <= periods <= most
 

@@ -17,7 +17,7 @@ from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.threshold import threshold_amplitudes
 
-from .stroboscopic import after
+from .stroboscopic import after, differences, moving
 
 make = Structure.nondimensional
 ALIKE = (make(), make(e=0.3), make(D=0.05), make(mu=1.5, kappa=2.1))
@@ -35,26 +35,10 @@ UNLIKE = (
 def pushed_point(structure, eta, size):
     """The box's motion, with forces and gravity of some size beside its own."""
     level = size * structure.omega**2
-    forces = {"force1": level * structure.m1}
+    pushes = {"force1": level * structure.m1, "box_acceleration": 0.2 * level}
     if not structure.wall:
-        forces["force2"] = -0.5 * level * structure.m2
-    pushes = {**forces, "box_acceleration": 0.2 * level}
+        pushes["force2"] = -0.5 * level * structure.m2
     return Point(structure, Excitation.nondimensional(eta, structure, **pushes))
-
-
-def differences(instance, point, start, periods):
-    """Central differences of the state after some periods: the matrix through the FMU alone."""
-    step = 1e-7 * np.abs(start / point.state_units).max()
-    moves = step * np.diag(point.state_units)[moving(point)]
-    ends = [[after(instance, point, start + k * d, periods) for d in moves] for k in (1, -1)]
-    return (
-        np.subtract(*ends).T[moving(point)] / point.state_units[moving(point), None] / (2.0 * step)
-    )
-
-
-def moving(point):
-    """Coordinates of the state that may deviate: those of mass 1 alone beside a wall."""
-    return slice(0, 4, 2 if point.structure.wall else 1)
 
 
 def monodromy(impacts, point, periods=1):
@@ -90,12 +74,8 @@ def test_monodromy_equals_differences_of_the_fmu(instances, structure, eta, push
     start = after(plain, point, REST, 200)
     gap = start[1] - start[0] + structure.gap_offset
     if min(gap, (structure.stroke or np.inf) - gap) < 1e-3 * np.abs(start).max():
-        start = point.state_units * [
-            -0.05,
-            0.05,
-            1.0,
-            -1.0,
-        ]  # in contact there is no neighbour beyond
+        # in contact there is no neighbour beyond
+        start = point.state_units * [-0.05, 0.05, 1.0, -1.0]
     impacts = simulate_nondimensional_impacts(eventful, point, start, 2)
     assert len(impacts.time)
     expected = differences(plain, point, start, 2)
@@ -110,9 +90,8 @@ def test_short_openings_are_seen_wherever_a_contact_begins(above):
     """On the common steady motion, which opens for less than a sample, by 400,000 of its phases."""
     pressed = make(kappa=1.5, D=0.01).replace(clearance=-1.0)
     (level,) = threshold_amplitudes(pressed, np.array([0.7]))
-    form = ClosedForm.from_structure(
-        pressed, Excitation(frequency=0.7, amplitude=level * (1.0 + above))
-    )
+    excitation = Excitation(frequency=0.7, amplitude=level * (1.0 + above))
+    form = ClosedForm.from_structure(pressed, excitation)
     phases = np.linspace(0.0, 2.0 * np.pi, 400_001)
     x, _, v, _ = form.steady_response(phases, INNER).T
     opened = phases[form.contact_force(phases, x, v) >= 0.0]
