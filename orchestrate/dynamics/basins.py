@@ -298,14 +298,9 @@ def basin(
     )
     if sides[0].name == sides[1].name:
         raise InputError(f"x and y: {sides[0].name} twice; expected two coordinates")
-    return as_given(
-        excitation=point.excitation.replace(phase=phase),
-        x=sides[0],
-        y=sides[1],
-        at=questions.checked_state("at", at, structure),
-        known=known.states if known else (),
-        settings=run,
-    )
+    fields = {"x": sides[0], "y": sides[1], "at": questions.checked_state("at", at, structure)}
+    fields |= {"known": known.states if known else (), "settings": run}
+    return as_given(excitation=point.excitation.replace(phase=phase), **fields)
 
 
 def mean_attractor_state(result: xr.Dataset, frequency: float) -> Floats:

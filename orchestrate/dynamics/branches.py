@@ -86,11 +86,8 @@ class BranchJob(Question):
         first = len(back.points) - 1.0
         points = [*reversed(back.points[1:]), *forth.points]
         bifurcations = [
-            *(
-                replace(each, position=first - each.position)
-                for each in reversed(back.bifurcations)
-            ),
-            *(replace(each, position=first + each.position) for each in forth.bifurcations),
+            *(replace(b, position=first - b.position) for b in reversed(back.bifurcations)),
+            *(replace(b, position=first + b.position) for b in forth.bifurcations),
         ]
         solved = [*points, *(each.point for each in bifurcations)]
         with EventInstance(fmus[OSCILLATOR]) as instance:
@@ -201,9 +198,8 @@ def branch(
         start, (over,), excitation_arguments(eta, frequency, amplitude), low_high, structure, pushes
     )
     if start is None:
-        start, value = find_first_orbit_and_value(
-            structure, over, low_high, excitation, period, running
-        )
+        search = structure, over, low_high, excitation, period, running
+        start, value = find_first_orbit_and_value(*search)
     else:
         value = parameter_at_start(start, over, switch, structure, pushes)
     require_inside_limits(over, value, low_high)
@@ -282,13 +278,11 @@ def complete_excitation(
 ) -> tuple[tuple[str, float], ...]:
     """Return the excitation as (name, number) pairs, of ``start`` where there are no arguments."""
     is_pushed = any(pushes.values()) or not pushes.keys().isdisjoint(varied)
-    over, names = varied[0], [name for name, _ in arguments]
     if start is not None and not arguments:
         by_frequency = not {"frequency", "amplitude"}.isdisjoint(varied)
         form = ("frequency", "amplitude") if by_frequency else ("eta",)
-        has_level = (
-            is_pushed or structure.has_scale or not {*OF_LENGTH, "amplitude"}.isdisjoint(varied)
-        )
+        has_level = is_pushed or structure.has_scale
+        has_level = has_level or not {*OF_LENGTH, "amplitude"}.isdisjoint(varied)
         eta, amplitude = (float(start[name].values.flat[0]) for name in ("eta", "amplitude"))
         if has_level and not math.isclose(amplitude * eta**2, 1.0, rel_tol=1e-12):
             if "eta" in varied:
@@ -301,9 +295,8 @@ def complete_excitation(
         if "eta" in form and not OF_OMEGA.isdisjoint(varied) and started_by_frequency:
             form = ("frequency", "amplitude")
         arguments = tuple((name, float(start[name].values.flat[0])) for name in form)
-        return (*arguments, *pushes.items())
-    if over in ("eta", "frequency", "amplitude") and over not in names:
-        arguments = (*arguments, (over, limits[0]))
+    elif varied[0] in OF_EXCITATION and varied[0] not in dict(arguments):
+        arguments = (*arguments, (varied[0], limits[0]))
     return (*arguments, *pushes.items())
 
 
@@ -317,10 +310,11 @@ def find_first_orbit_and_value(
 ) -> tuple[xr.Dataset, float]:
     """Compute an orbit within the limits to start from; return it, and the parameter there."""
     excitation: dict[str, Any] = dict(arguments)
-    value = excitation[over] if over in excitation else limits[0]
-    if over not in excitation:
-        value = structure.get(over)
-        value = value if limits[0] <= value <= limits[1] else limits[0]
+    if over in excitation:
+        value = excitation[over]
+    else:
+        own = structure.get(over)
+        value = own if limits[0] <= own <= limits[1] else limits[0]
         structure = structure.replace(**{over: value})
     require_inside_limits(over, value, limits)
     return compute_start_orbit(structure, excitation, period, running), value

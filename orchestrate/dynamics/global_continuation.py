@@ -1,4 +1,4 @@
-"""Match attractors along a parameter by global continuation from random starts.
+"""Match attractors along a parameter by global continuation from random starts (Datseris 2023).
 
 Global continuation as of Datseris, Rossi and Wagemakers, Chaos 33, 073151 (2023): states on the
 attractors of one value are further starts at its neighbours, so that an attractor is found as far

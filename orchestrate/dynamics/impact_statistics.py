@@ -46,11 +46,7 @@ class ImpactStatisticsJob(ImpactsQuestion):
 
     def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
         structure, excitation = item.point
-        span, periods, closing = (
-            period_in_tau(excitation.eta(structure)),
-            self.periods,
-            impacts.closing,
-        )
+        span, periods = period_in_tau(excitation.eta(structure)), self.periods
         exponent = largest_exponent(impacts, periods, item.point)
         which = np.minimum((impacts.time / span).astype(int), periods - 1)
         each = np.bincount(which, minlength=periods)

@@ -169,12 +169,10 @@ def orbit_variables(setting: Setting, table: Table, row: str) -> dict[str, Varia
     }
     variables = {}
     for name, text in LONG_NAMES.items():
-        dims, meanings = (row, *DIMENSIONS.get(name, ())), MEANINGS.get(name)
-        variables[name] = (
-            flags(dims, columns[name], text, meanings)
-            if meanings
-            else variable(dims, columns[name], UNITS.get(name, "1"), text)
-        )
+        dims = (row, *DIMENSIONS.get(name, ()))
+        variables[name] = variable(dims, columns[name], UNITS.get(name, "1"), text)
+        if name in MEANINGS:
+            variables[name] = flags(dims, columns[name], text, MEANINGS[name])
     return variables
 
 

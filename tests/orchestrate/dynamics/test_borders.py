@@ -8,6 +8,7 @@ import pytest
 
 import orchestrate
 from orchestrate.dynamics import borders
+from orchestrate.dynamics.bifurcation_kinds import Kind
 from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.closed_form import ClosedForm
@@ -20,7 +21,7 @@ from .single_impact import SingleImpact
 
 PAPER = Structure.nondimensional(e=0.7, D=0.005)
 LIMITS = {"e": (0.6, 0.8), "D": (0.003, 0.01), "kappa": (1.15, 1.3)}
-KINDS = ("Neimark-Sacker", "period_doubling", "grazing_of_a_flight")
+KINDS = Kind.TORUS, Kind.FLIP, Kind.TOUCHING
 CURVES = [(kind, list(LIMITS)[(i + k) % 3]) for k in range(3) for i, kind in enumerate(KINDS)]
 
 
@@ -29,17 +30,10 @@ def window():
     return branch(PAPER, eta=4.0, period=2, limits=(3.2, 4.0))
 
 
-def number(kind):
-    """The bifurcation of a kind that is highest in eta."""
-    found = window()
-    names = found.bifurcation_kind.attrs["flag_meanings"].split()
-    there = [i for i, one in enumerate(found.bifurcation_kind.values) if names[one] == kind]
-    return there[-1]
-
-
 @pytest.mark.parametrize(("kind", "over"), ordinary(CURVES, several_names=True))
 def test_curves_are_where_the_closed_form_has_the_bifurcation(kind, over):
-    limits, at = [(2.5, 5.0), LIMITS[over]], number(kind)
+    limits = [(2.5, 5.0), LIMITS[over]]
+    at = np.flatnonzero(window().bifurcation_kind.values == kind)[-1]  # that is highest in eta
     asked = {"over": ("eta", over), "limits": limits, "longest": 0.4}
     found = border(PAPER, start=window(), bifurcation=at, **asked)
     assert found.sizes["point"] > 5
@@ -49,10 +43,10 @@ def test_curves_are_where_the_closed_form_has_the_bifurcation(kind, over):
         value = float(found[over].values[i])
         truth = SingleImpact(float(found.eta.values[i]), 2, **{over: value})
         assert found.node_closing.values[i, 0] == pytest.approx(truth.closing, abs=1e-10)
-        if kind == "Neimark-Sacker":
+        if kind == Kind.TORUS:
             assert np.abs(np.abs(truth.multipliers) - 1.0).min() < 1e-9
             assert np.abs(truth.multipliers - np.exp(1j * found.angle.values[i])).min() < 1e-9
-        elif kind == "period_doubling":
+        elif kind == Kind.FLIP:
             assert np.abs(truth.multipliers + 1.0).min() < 1e-9
         else:
             assert abs(found.nearest_miss.values[i]) < 1e-12
@@ -60,27 +54,20 @@ def test_curves_are_where_the_closed_form_has_the_bifurcation(kind, over):
             assert abs(truth.gap(times).min()) < 1e-7
 
 
-FOLDED = Structure.nondimensional(D=0.02, clearance=3.0)
-
-
-@functools.cache
-def folded_branch():
-    box = {"frequency": 1.12, "amplitude": 1.12**-2}
-    return branch(FOLDED, over="frequency", **box, limits=(1.1, 1.36), longest=0.3)
-
-
-@pytest.mark.parametrize("beyond", [-1e-7, 0.0, 1e-7])
-def test_a_fold_is_found_from_either_side_of_it(monkeypatch, beyond):
+def test_a_fold_is_found_from_either_side_of_it(monkeypatch):
     """Beyond there is no orbit, and what is known of a fold is known to its accuracy."""
-    start = folded_branch()
+    folded = Structure.nondimensional(D=0.02, clearance=3.0)
+    box = {"over": "frequency", "frequency": 1.12, "amplitude": 1.12**-2}
+    start = branch(folded, **box, limits=(1.1, 1.36), longest=0.3)
     monkeypatch.setattr(questions, "compute_dataset", lambda job, *rest: job)
-    (at,) = np.flatnonzero(start.bifurcation_kind.values == 0)
+    (at,) = np.flatnonzero(start.bifurcation_kind.values == Kind.FOLD)
     value = float(start.bifurcation_value[at])
     question = {"over": ("frequency", "e"), "limits": [(1.2, 1.4), (0.6, 0.8)]}
-    job = border(FOLDED, start=start, bifurcation=at, **question)
-    job = replace(job, values=(value + beyond, 0.7))
-    curve, root = borders.solve_start_on_curve(job)
-    assert root.unknowns[curve.family.node_unknowns :] == pytest.approx([value, 0.7], abs=1e-11)
+    job = border(folded, start=start, bifurcation=at, **question)
+    for beyond in (-1e-7, 0.0, 1e-7):
+        near = replace(job, values=(value + beyond, 0.7))
+        curve, root = borders.solve_start_on_curve(near)
+        assert root.unknowns[curve.family.node_unknowns :] == pytest.approx([value, 0.7], abs=1e-11)
 
 
 DAMPED = Structure(d1=0.1, d2=0.12, e=0.5)

@@ -23,8 +23,8 @@ from orchestrate.model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
 
-from .settling import settling_run
 from .test_closed_form import random_orbit
+from .test_settling import settling_run
 
 PAPER = Structure.nondimensional()
 USUAL = settling_run()

@@ -92,7 +92,9 @@ def test_sweeps_change_where_a_branch_with_a_force_folds_and_doubles():
     steps = np.abs(np.diff(gaps))
     assert steps[:-1].max() < 0.1 * steps[-1]
     start = orchestrate.orbit(OPEN, eta=flip, force1=0.41, **QUICK)
-    along = orchestrate.branch(OPEN, start=start, over="force1", limits=(0.38, 0.42), **QUICK)
+    along = orchestrate.branch(
+        OPEN, start=start, over="force1", limits=(0.38, 0.42), longest=0.3, **QUICK
+    )
     assert values(along, Kind.FLIP) == pytest.approx([0.4], abs=1e-9)
     assert along.force1.values.min() == 0.38 and along.eta.values == pytest.approx(flip)
 

@@ -1,20 +1,24 @@
 """How long responses are run on, by each threshold, and on the FMU."""
 
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from orchestrate.dynamics import settling
-from orchestrate.dynamics.settling import run_until_settled, transient_periods
+from orchestrate.dynamics.settling import (
+    SettlingSettings,
+    run_until_settled,
+    transient_periods,
+)
 from orchestrate.errors import InputError
 from orchestrate.fmu import REST
 from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 
-from .settling import settling_run
-
 PAPER = Structure.nondimensional()
+settling_run = partial(SettlingSettings, transient=400, settle=300.0, samples=48)  # as by default
 
 
 @pytest.mark.parametrize(
