@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -73,7 +73,8 @@ class Family:
 
     setting: Setting
     sequence: ImpactSequence
-    scale: Floats = field(default_factory=lambda: np.zeros(0))  # sizes of the unknowns
+    scale: Floats  # sizes of the unknowns
+    fixed: bool = False  # whether Newton's method solves for the nodes at fixed parameters
     last: tuple[bytes, PeriodicOrbit] | None = None  # residual and Jacobian ask for the same
 
     @classmethod
@@ -109,19 +110,11 @@ class Family:
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
         """Return the residual's Jacobian: exact by nodes, by differences by parameters."""
-        sides = enumerate(self.setting.limits, self.node_unknowns)
-        columns = [central_difference(self.residual, unknowns, i, *at)[:, None] for i, at in sides]
-        return np.hstack([self.orbit(unknowns).jacobian().real, *columns])
-
-
-class FixedParameterFamily(Family):
-    """The same equations, of which Newton's method solves for the nodes at fixed parameters."""
-
-    def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Return the Jacobian; only at the root with the parameters' columns."""
-        if at_root:
-            return super().jacobian(unknowns)
-        columns = np.zeros((self.node_unknowns, len(self.setting.limits)))
+        count, limits = self.node_unknowns, self.setting.limits
+        columns = np.zeros((count, len(limits)))  # those of fixed ones only at the root
+        if at_root or not self.fixed:
+            for i, (low, high) in enumerate(limits):
+                columns[:, i] = central_difference(self.residual, unknowns, count + i, low, high)
         return np.hstack([self.orbit(unknowns).jacobian().real, columns])
 
 
@@ -142,5 +135,4 @@ def central_difference(
         moved[which] = min(max(end, min(low, value)), max(high, value))
         ends.append((function(moved), moved[which]))
     (before, first), (after, last) = ends
-    slope: Floats = (after - before) / (last - first)
-    return slope
+    return np.asarray((after - before) / (last - first))

@@ -11,7 +11,7 @@ from ..fmu import EventInstance, Impacts, start_motion
 from ..response.questions import Point
 from .closed_form import INNER, OUTER, ClosedForm, Floats
 from .continuation import SOLVER_ERRORS, NoConvergenceError, Root, newton_correct, unit_vector
-from .families import Family, FixedParameterFamily, Setting
+from .families import Family, Setting
 from .periodic_orbit import (
     AT_OUTER_END,
     CLOSING,
@@ -115,7 +115,7 @@ def solve_orbit(
     family = Family.from_nodes(setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), values)
     normal = unit_vector(len(unknowns), family.node_unknowns)
-    fixed = FixedParameterFamily(setting, sequence, family.scale)
+    fixed = Family(setting, sequence, family.scale, fixed=True)
     return family, newton_correct(
         fixed, unknowns, normal, max_iterations=max_iterations, max_distance=max_distance
     )
