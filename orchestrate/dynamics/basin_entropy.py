@@ -10,9 +10,16 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..lazy import xr
 from ..model.arguments import checked_integer
-from ..response.labels import variable
+from ..response.labels import column_variables, make_dataset, variable
 
 LEAST_BOXES = 4  # along each side of the plane
+TEXTS = {
+    "basin_entropy": "mean entropy of boxes of starts",
+    "boundary_basin_entropy": "mean entropy of boxes with more than one attractor",
+    "uncertainty_exponent": "exponent of the uncertain fraction over the box size",
+    "uncertainty_exponent_error": "standard error of the exponent by the fit",
+    "boundary_dimension": "box-counting dimension of the boundaries",
+}
 Labels = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
@@ -85,36 +92,22 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
     size = checked_integer("box", box, 2)
     known = getattr(basins, "attractor_of", None)
     if known is None or len(known.dims) != 2:
-        kind = type(basins).__name__
-        raise InputError(f"basins: {kind} is no answer of basin; expected one")
+        raise InputError(f"basins: {type(basins).__name__} is no answer of basin; expected one")
     labels = np.asarray(known.values, dtype=np.int64)
     max_size = min(labels.shape) // LEAST_BOXES
     if size > max_size:
-        raise InputError(
-            f"box = {size}: of a plane of {labels.shape[1]} x {labels.shape[0]} starts; expected "
-            f"at most {max_size}"
-        )
+        plane = f"{labels.shape[1]} x {labels.shape[0]} starts"
+        raise InputError(f"box = {size}: of a plane of {plane}; expected at most {max_size}")
     entropies = box_entropies(labels, size)
     if not entropies.size:
         raise InputError(f"box = {size}: the masses overlap in each box; expected a smaller one")
     sizes = 2 ** np.arange(1, max_size.bit_length())
     fractions = np.array([np.mean(box_entropies(labels, each) > 0.0) for each in sizes])
     exponent, error = fit_uncertainty_exponent(sizes - 1.0, fractions)  # sides from start to start
-    texts = {
-        "basin_entropy": (float(entropies.mean()), "mean entropy of boxes of starts"),
-        "boundary_basin_entropy": (
-            float(inside.mean()) if (inside := entropies[entropies > 0.0]).size else math.nan,
-            "mean entropy of boxes with more than one attractor",
-        ),
-        "uncertainty_exponent": (exponent, "exponent of the uncertain fraction over the box size"),
-        "uncertainty_exponent_error": (error, "standard error of the exponent by the fit"),
-        "boundary_dimension": (2.0 - exponent, "box-counting dimension of the boundaries"),
-    }
+    inside = entropies[entropies > 0.0]
+    boundary = float(inside.mean()) if inside.size else math.nan
+    numbers = float(entropies.mean()), boundary, exponent, error, 2.0 - exponent
     fraction = variable("box_size", fractions, "1", "share of boxes with more than one attractor")
-    side = variable("box_size", sizes, "1", "starts along each side of a box")
-    return xr.Dataset(
-        {name: variable((), value, "1", text) for name, (value, text) in texts.items()}
-        | {"uncertain_fraction": fraction},
-        {"box_size": side},
-        {"title": "Basin entropy", "box": size},
-    )
+    variables = {**column_variables((), TEXTS, numbers), "uncertain_fraction": fraction}
+    coordinates = {"box_size": variable("box_size", sizes, "1", "starts along each side of a box")}
+    return make_dataset(variables, coordinates, "Basin entropy", box=size)

@@ -43,10 +43,10 @@ class SingleImpact:
         incoming = a @ self.state + drive
         outgoing = a @ restitution @ self.state + drive
         jump = outgoing - restitution @ incoming
-        saltation = restitution + np.outer(jump, GAP) / (GAP @ incoming)
-        found = np.linalg.eigvals(flow @ saltation)
+        self.saltation = restitution + np.outer(jump, GAP) / (GAP @ incoming)
+        found = np.linalg.eigvals(flow @ self.saltation)
         self.multipliers = found[np.lexsort((found.imag, -np.abs(found).round(12)))]
-        self.a, self.b, self.eta, self.time = a, b, eta, time
+        self.a, self.eta, self.time = a, eta, time
         self.restitution, self.response = restitution, response
 
     @property
