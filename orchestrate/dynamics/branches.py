@@ -191,7 +191,12 @@ def branch(
     require_delaminated(structure)
     if start is not None:
         require_orbit_dataset(start, allow_several=switch is not None)
-        require_same_parameter(start, over, switch)
+        along = start.attrs.get("over", over)
+        if switch is not None and along != over:
+            raise InputError(
+                f"over = {over!r}: the branch of start is along {along!r}; expected the same with "
+                f"switch = {switch!r}"
+            )
     low_high = checked_limits(over, limits)
     pushes = pushes_at_start(start, box_acceleration=box_acceleration, force1=force1, force2=force2)
     excitation = complete_excitation(
@@ -200,8 +205,13 @@ def branch(
     if start is None:
         search = structure, over, low_high, excitation, period, running
         start, value = find_first_orbit_and_value(*search)
+    elif switch is not None:
+        index = checked_bifurcation_index(start, "switch", switch)
+        value = float(start["bifurcation_value"].values[index])
+    elif over in pushes:
+        value = pushes[over]
     else:
-        value = parameter_at_start(start, over, switch, structure, pushes)
+        value = float(start[over]) if over in start.coords else structure.get(over)
     require_inside_limits(over, value, low_high)
     nodes, kind = start_guess_and_kind(start, "switch", switch)
     setting = varied_setting(structure, excitation, (over,), (low_high,))
@@ -235,15 +245,6 @@ def require_orbit_dataset(start: Any, allow_several: bool) -> None:
     if start["node_kind"].ndim != 1 and not allow_several:
         raise InputError(
             "start: several orbits; expected one (in Python branch.isel(point=0)), or switch="
-        )
-
-
-def require_same_parameter(start: xr.Dataset, over: str, switch: int | None) -> None:
-    along = start.attrs.get("over", over)
-    if switch is not None and along != over:
-        raise InputError(
-            f"over = {over!r}: the branch of start is along {along!r}; expected the same with "
-            f"switch = {switch!r}"
         )
 
 
@@ -334,24 +335,6 @@ def require_inside_limits(over: str, value: float, limits: tuple[float, float]) 
         raise InputError(
             f"limits = {limits!r}: {over} = {value!r}{unit} at the start; expected it inside"
         )
-
-
-def parameter_at_start(
-    start: xr.Dataset,
-    over: str,
-    switch: int | None,
-    structure: Structure,
-    pushes: Mapping[str, float],
-) -> float:
-    """Return the parameter's value at the start: of the orbit, or of bifurcation ``switch``."""
-    if switch is not None:
-        index = checked_bifurcation_index(start, "switch", switch)
-        return float(start["bifurcation_value"].values[index])
-    if over in pushes:
-        return pushes[over]
-    if over in start.coords:
-        return float(start[over])
-    return structure.get(over)
 
 
 def checked_bifurcation_index(start: xr.Dataset, argument: str, index: int) -> int:

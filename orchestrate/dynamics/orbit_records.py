@@ -131,14 +131,10 @@ def branch_table(rows: Sequence[Table], prefix: str, located: Sequence[Any]) -> 
 
 def orbit_coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
     points = [setting.point(values) for values in table["values"]]
-    excitations = [point.excitation for point in points]
-    along: dict[str, Any] = {
-        "eta": [point.excitation.eta(point.structure) for point in points],
-        "frequency": [excitation.frequency for excitation in excitations],
-        "amplitude": [excitation.amplitude for excitation in excitations],
-    }
-    pushed = [name for name in PUSHES if name in dict(setting.excitation)]
-    along |= {name: [getattr(excitation, name) for excitation in excitations] for name in pushed}
+    pushed = (name for name in PUSHES if name in dict(setting.excitation))
+    along: dict[str, Any] = {"eta": [each.excitation.eta(each.structure) for each in points]}
+    for name in ("frequency", "amplitude", *pushed):
+        along[name] = [getattr(point.excitation, name) for point in points]
     along |= {name: table["values"][:, i] for i, name in enumerate(setting.over)}
     parameters = {name: parameter_variable(name, row, values) for name, values in along.items()}
     periods = np.arange(table["zero"].shape[1])

@@ -236,7 +236,7 @@ def job_fields():
 
 
 def test_breaks_are_rows_of_nan_and_never_connected():
-    data = orchestrate.manifold(PAPER, eta=3.0, length=1.0, **QUIET)
+    data = orchestrate.manifold(PAPER, eta=3.0, length=0.6, **QUIET)
     for number, side in enumerate("+-"):
         part = data.sel(side=side)
         last = int(np.flatnonzero(np.isfinite(part.arclength.values))[-1])
