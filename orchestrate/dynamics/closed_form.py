@@ -145,7 +145,7 @@ class ClosedForm:
         more = self.cosine, self.sine, self.drive, self.push, self.offset, self.load
         forces = self.force_v, self.force_x, float(self.wall), self.limit
         motion = self.eta, self.e, self.e_slope, *self.shares, *forces
-        return np.concatenate([motion, np.column_stack([*columns, *more]).ravel()])
+        return np.concatenate([motion, np.array([*columns, *more]).T.ravel()])
 
     def call_kernel(
         self, name: str, columns: Sequence[Any], width: int, span: float = 0.0
