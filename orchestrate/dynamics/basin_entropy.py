@@ -38,17 +38,6 @@ def box_entropies(labels: Labels, size: int) -> Floats:
     return np.asarray(terms.sum(axis=0))
 
 
-def fit_uncertainty_exponent(sizes: Floats, fractions: Floats) -> tuple[float, float]:
-    """Fit alpha of ``fraction ~ size**alpha`` in logs; return it and its error, or NaN."""
-    from scipy.stats import linregress
-
-    known = fractions > 0.0
-    if np.count_nonzero(known) < 3:  # of boxes, through which a line is fitted
-        return math.nan, math.nan
-    line = linregress(np.log(sizes[known]), np.log(fractions[known]))
-    return float(line.slope), float(line.stderr)
-
-
 def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
     """Compute basin entropy, boundary basin entropy, and the uncertainty exponent of basins.
 
@@ -90,20 +79,27 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
     (0.6931, 0.0)
     """
     size = checked_integer("box", box, 2)
-    known = getattr(basins, "attractor_of", None)
-    if known is None or len(known.dims) != 2:
+    plane = getattr(basins, "attractor_of", None)
+    if plane is None or len(plane.dims) != 2:
         raise InputError(f"basins: {type(basins).__name__} is no answer of basin; expected one")
-    labels = np.asarray(known.values, dtype=np.int64)
+    labels = np.asarray(plane.values, dtype=np.int64)
     max_size = min(labels.shape) // LEAST_BOXES
     if size > max_size:
-        plane = f"{labels.shape[1]} x {labels.shape[0]} starts"
-        raise InputError(f"box = {size}: of a plane of {plane}; expected at most {max_size}")
+        starts = f"{labels.shape[1]} x {labels.shape[0]} starts"
+        raise InputError(f"box = {size}: of a plane of {starts}; expected at most {max_size}")
     entropies = box_entropies(labels, size)
     if not entropies.size:
         raise InputError(f"box = {size}: the masses overlap in each box; expected a smaller one")
     sizes = 2 ** np.arange(1, max_size.bit_length())
     fractions = np.array([np.mean(box_entropies(labels, each) > 0.0) for each in sizes])
-    exponent, error = fit_uncertainty_exponent(sizes - 1.0, fractions)  # sides from start to start
+    exponent = error = math.nan
+    if np.count_nonzero(fractions) >= 3:  # of boxes, through which a line is fitted in logs
+        from scipy.stats import linregress
+
+        known = fractions > 0.0
+        sides = sizes[known] - 1.0  # from start to start
+        line = linregress(np.log(sides), np.log(fractions[known]))
+        exponent, error = float(line.slope), float(line.stderr)
     inside = entropies[entropies > 0.0]
     boundary = float(inside.mean()) if inside.size else math.nan
     numbers = float(entropies.mean()), boundary, exponent, error, 2.0 - exponent

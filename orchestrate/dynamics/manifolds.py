@@ -33,7 +33,7 @@ from .branches import (
     pushes_at_start,
     require_orbit_dataset,
 )
-from .closed_form import Floats
+from .closed_form import Floats, separating_sign
 from .continuation import SOLVER_ERRORS, with_positive_leading_component
 from .orbit_records import pad_rows
 from .orbit_search import solve_orbit
@@ -112,8 +112,12 @@ def unstable_direction(orbit: PeriodicOrbit) -> Floats:
     values, vectors = np.linalg.eig(orbit.monodromy())
     node = vectors[:, np.argmax(np.abs(values))].real
     form, phase = orbit.form, orbit.nodes[:1, PHASE]
-    mode = orbit.modes[-1:]
-    arrival = np.linalg.solve(orbit.reduction_matrices[-1], np.append(0.0, node[1:]))
+    mode, closing = orbit.modes[-1:], separating_sign(orbit.sequence.outer[:1])
+    # from the state before the first node to its gap, centre (x, v) and closing speed
+    reduction = np.zeros((4, 4))
+    reduction[0, :2], reduction[3, 2:] = [-1.0, 1.0], closing * [1.0, -1.0]
+    reduction[1, :2] = reduction[2, 2:] = form.shares
+    arrival = np.linalg.solve(reduction, np.append(0.0, node[1:]))
     rate = form.state_rates(orbit.end_states[-1:], orbit.end_phases[-1:], mode)[0]
     deviation = arrival - rate * node[PHASE] / form.eta
     vector = form.flow_matrices(-phase / form.eta, mode)[0] @ deviation

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import TURN
-from .closed_form import FREE, INNER, OUTER, ClosedForm, Floats, separating_sign
+from .closed_form import FREE, INNER, OUTER, ClosedForm, Floats
 
 IMPACT, STICK, RELEASE = range(3)  # kinds of nodes; after STICK follows permanent contact
 AT_OUTER_END = 3  # added to the kind of a node at the outer end of a stroke
@@ -136,17 +136,6 @@ class PeriodicOrbit:
     def states(self, segment: NDArray[np.int_], phase: Floats) -> Floats:
         """Return the states at phases inside given segments, (n, 4)."""
         return self.states_and_rates(segment, phase)[0]
-
-    @property
-    def reduction_matrices(self) -> Floats:
-        """Return matrices from states before nodes to gap, centre (x, v) and closing speed."""
-        sign = separating_sign(next_rows(self.sequence.outer))[:, None]
-        matrices = np.zeros((self.node_count, 4, 4))
-        matrices[:, 0, :2] = [-1.0, 1.0]
-        matrices[:, [1, 2], [0, 2]] = self.form.shares[0]
-        matrices[:, [1, 2], [1, 3]] = self.form.shares[1]
-        matrices[:, 3, 2:] = sign * [1.0, -1.0]
-        return matrices
 
     def residual(self) -> Floats:
         return self.segment_arrays[0].ravel() if self.node_count else np.zeros(0)
