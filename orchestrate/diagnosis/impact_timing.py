@@ -96,7 +96,8 @@ class Strikes:
     blow: float
     opposite: float  # correlation of what both sensors hear in the loudest bin; NaN with one
     order2: float  # over order 1
-    stiffens: float  # growth of the stiffness, over order 2: see `strikes_of_sensor`
+    stiffens: float  # growth of the stiffness from that at rest, over order 2
+    from_shut: float  # the same from the least stiffness of shut faces; NaN: not known
     place: float  # where it strikes, over the stroke: -1 or 1 at its ends
     spread: float  # of the place in the `middle` of the windows, over the stroke
     stiffness: float  # frequency over that of the faces shut; NaN where that is not known
@@ -130,8 +131,9 @@ class Strikes:
             return "base strikes"
         before_end = abs(self.place) < settings.at_end
         moves = self.spread >= settings.spread and not before_end
-        stiffens = settings.stiffens_moving if moves else settings.stiffens
-        softens = before_end and self.stiffens < settings.softens
+        is_softer = self.stiffens > settings.stiffens and self.from_shut < settings.softer
+        growth = self.from_shut if is_softer else self.stiffens
+        softens = before_end and growth < settings.softens
         lifts = before_end and self.order2 > settings.lifts
         if is_locked and is_blow and self.opposite < settings.opposite and not softens:
             return FACES
@@ -140,7 +142,9 @@ class Strikes:
             "not locked": is_locked and self.one_sided >= settings.one_sided,
             "kinks": is_blow,
             "something small strikes": self.order2 >= settings.order2,
-            STOP: self.stiffens <= stiffens and not softens and not lifts,
+            STOP: growth <= (settings.stiffens_moving if moves else settings.stiffens)
+            and not softens
+            and not lifts,
             SOFTER: settings.slower <= self.stiffness <= settings.stiffer
             and not self.opposite > settings.together,
         }
@@ -170,12 +174,11 @@ def strikes_of_sensor(
     loud = (power >= settings.loud * power[top]) & ~quiet
     loud[top] = True
     turned = np.exp(1j * peak[loud])
-    shut = shut_resonance * (1.0 - settings.known)
     rest, stiffness = rest_frequency_and_stiffness(motion, loud, quiet, settings)
-    grown = [
-        float(np.median((stiffness / one**2 - 1.0)[loud] / second[loud])) for one in (rest, shut)
-    ]
-    excused = grown[0] > settings.stiffens and grown[1] < settings.softer  # false of a NaN
+    from_rest, from_shut = (
+        float(np.median((stiffness / one**2 - 1.0)[loud] / second[loud]))
+        for one in (rest, shut_resonance * (1.0 - settings.known))
+    )
     ends = 0.5 * (1.0 + settings.middle), 0.5 * (1.0 - settings.middle)
     position = (size * np.cos(peak))[loud] / size.max()
     return Strikes(
@@ -186,7 +189,8 @@ def strikes_of_sensor(
         blow=float(np.median(blow[loud])),
         opposite=float(np.median(opposite[loud])),
         order2=float(np.median(second[loud])),
-        stiffens=grown[excused],
+        stiffens=from_rest,
+        from_shut=from_shut,
         place=float(np.median(turned.real)),
         spread=float(np.subtract(*np.quantile(position, ends))),
         stiffness=math.sqrt(max(np.median(stiffness[loud]), 0.0)) / shut_resonance,
