@@ -6,7 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -18,9 +18,6 @@ from .evidence import Evidence
 from .opening_force import unit_opening_force
 from .single_mass import SingleMass
 from .undamaged import SoundStructure
-
-if TYPE_CHECKING:
-    from lmfit import Parameters
 
 REPORTED = {  # units and long names
     "f1": ("Hz", "natural frequency of half 1 alone"),
@@ -65,15 +62,6 @@ class Hypothesis(ABC):
     @abstractmethod
     def reported_parameters(self, values: Values, evidence: Evidence) -> dict[str, float]:
         """Return the fitted numbers as physical parameters in SI, by the names of ``REPORTED``."""
-
-    def lmfit_parameters(self, start: Values, evidence: Evidence) -> Parameters:
-        """Convert a start to lmfit's parameters, clipped to the bounds."""
-        from lmfit import Parameters
-
-        made = Parameters()
-        for name, (low, high) in self.bounds(evidence).items():
-            made.add(name, value=float(np.clip(start[name], low, high)), min=low, max=high)
-        return made
 
 
 # -- sound ----------------------------------------------------------------------------------------

@@ -32,6 +32,10 @@ class Solution:
     misfit: float  # see `misfit`; 1 is as far as `model_error` and the noise allow
 
 
+class EnoughMotionsError(Exception):
+    """Raised where a way downhill would take more motions than it may."""
+
+
 @dataclass
 class Search:
     """Search for the numbers of a hypothesis that fit a record; counts the computed motions."""
@@ -81,24 +85,32 @@ class Search:
         return sorted((self.minimise(one.values) for one in chosen), key=lambda one: one.misfit)
 
     def minimise(self, start: Mapping[str, float]) -> Solution:
-        """Minimise the misfit of model and record from start parameters (SciPy's trf)."""
-        from lmfit import Minimizer
+        """Go downhill from a start, by SciPy's trf; at most ``steps`` motions and one more."""
+        from scipy.optimize import least_squares
 
-        hypothesis, bounds = self.hypothesis, self.hypothesis.bounds(self.evidence)
-        minimizer = Minimizer(
-            lambda parameters: self.residuals(parameters.valuesdict()).ravel(),
-            hypothesis.lmfit_parameters(start, self.evidence),
-        )
-        settings = self.evidence.settings
+        settings, bounds = self.evidence.settings, self.hypothesis.bounds(self.evidence)
+        limits = np.array([*bounds.values()]).T
+        tried = [np.clip([start[name] for name in bounds], *limits)]
+
+        def named(numbers: Floats) -> dict[str, float]:
+            return dict(zip(bounds, numbers.tolist(), strict=True))
+
+        def residuals(numbers: Floats) -> Floats:
+            tried.append(numbers.copy())
+            if len(tried) > 1 + settings.steps:
+                raise EnoughMotionsError
+            return self.residuals(named(numbers)).ravel()
+
+        def derivatives(numbers: Floats) -> Floats:
+            return self.residual_derivatives(named(numbers), bounds)
+
         scales: Any = {"loss": "soft_l1", "f_scale": SOFT_LIMIT, "x_scale": "jac"}
-        ends = {"ftol": settings.tolerance, "xtol": settings.tolerance, "max_nfev": settings.steps}
-        result = minimizer.minimize(
-            method="least_squares",
-            Dfun=lambda parameters: self.residual_derivatives(parameters.valuesdict(), bounds),
-            **(scales | ends),
-        )
-        values = dict(result.params.valuesdict())
-        return Solution(hypothesis.name, values, misfit(np.asarray(result.residual)))
+        ends = {"ftol": settings.tolerance, "xtol": settings.tolerance}
+        try:
+            end = least_squares(residuals, tried[0], derivatives, limits, **scales, **ends).x
+        except EnoughMotionsError:
+            end = tried[-1]
+        return Solution(self.hypothesis.name, named(end), misfit(self.residuals(named(end))))
 
     def polish(self, start: Solution) -> Solution:
         """Improve a minimum by linear regressions over clouds of points."""
@@ -147,15 +159,15 @@ def with_distinct_misfits(solutions: Sequence[Solution], ratio: float) -> list[S
 
 def without_neighbours(solutions: Sequence[Solution]) -> list[Solution]:
     """Drop the solutions that have nearly the split and clearance of a better one."""
+
+    def is_neighbour(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
+        names = [name for name in MIN_DISTANCES if name in one]
+        near = all(abs(one[name] - other[name]) <= MIN_DISTANCES[name] for name in names)
+        same_half_below = one.get("split", 0.0) * other.get("split", 0.0) >= 0.0
+        return bool(names) and near and same_half_below
+
     found: list[Solution] = []
     for one in solutions:
         if not any(is_neighbour(one.values, other.values) for other in found):
             found.append(one)
     return found
-
-
-def is_neighbour(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
-    """Return whether two solutions have the same half below and nearly the same numbers."""
-    names = [name for name in MIN_DISTANCES if name in one]
-    near = all(abs(one[name] - other[name]) <= MIN_DISTANCES[name] for name in names)
-    return bool(names) and near and one.get("split", 0.0) * other.get("split", 0.0) >= 0.0

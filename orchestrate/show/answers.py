@@ -20,7 +20,7 @@ from .plot import plot
 WORDS = {-1: "not in this record", 0: "no", 1: "yes"}
 MOVED = "{0.meaning.values}: {0.formula.values} ({0.source.values}). Also moved by: "
 MOVED += "{0.moved_by.values}."
-PACKAGES = ("numpy", "scipy", "xarray", "fmpy", "lmfit", "matplotlib")
+PACKAGES = ("numpy", "scipy", "xarray", "fmpy", "matplotlib")
 BY_RECORD = ("detect", "fit")  # their question is the record, which has a digest
 LONGEST = 160  # letters of an attribute
 ORIGIN = {  # attributes, and what a reader calls them
