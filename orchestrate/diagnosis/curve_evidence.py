@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar, TypeVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +30,6 @@ from .order_windows import (
 from .settings import SETTINGS, Settings
 
 Numbers = tuple[float | None, ...]
-Kind = TypeVar("Kind")
 SETTLE_CYCLES = (30, 200)  # fewest and most cycles before
 COARSE_SAMPLES = 7.0  # in a period of the highest frequency, for a coarse search
 COARSE_POINTS = 30  # most points of a coarse search
@@ -75,17 +74,15 @@ class CurveData:
             raise InputError(f"resonance curve: {text}; expected {FEWEST_POINTS} or more")
         sensors = tuple(str(name) for name in inside.channel.values)
         width = half_power_damping(inside)
+        amplitude = inside.amplitude.transpose("channel", "order", "frequency").values
         guessed = [zeta for zeta in (guess.zeta1, guess.zeta2) if zeta > 0.0]
         return cls(
             frequency=tuple(inside.frequency.values.tolist()),
             level=tuple(inside.level.values.tolist()),
             sensors=sensors,
-            amplitude=tuple(
-                tuple(none_for_nan(row) for row in rows)
-                for rows in inside.amplitude.transpose("channel", "order", "frequency").values
-            ),
-            phase=tuple(none_for_nan(row) for row in inside.phase.values),
-            floor=tuple(none_for_nan(row) for row in inside.floor.values),
+            amplitude=none_for_nan(amplitude),
+            phase=none_for_nan(inside.phase.values),
+            floor=none_for_nan(inside.floor.values),
             relative=inside.attrs.get("relative", "false") == "true",
             damping=float(f"{min([width, *guessed]):.2g}"),
             participation=checked_participation(participation, sensors),
@@ -114,18 +111,9 @@ class CurveData:
 
     def select_points(self, points: NDArray[np.intp]) -> CurveData:
         """Return the curve with only the points of these indices."""
-
-        def at_points(row: tuple[Kind, ...]) -> tuple[Kind, ...]:
-            return tuple(row[i] for i in points)
-
-        return replace(
-            self,
-            frequency=at_points(self.frequency),
-            level=at_points(self.level),
-            amplitude=tuple(tuple(at_points(row) for row in rows) for rows in self.amplitude),
-            phase=tuple(at_points(row) for row in self.phase),
-            floor=tuple(at_points(row) for row in self.floor),
-        )
+        names = ("frequency", "level", "amplitude", "phase", "floor")
+        every = ((name, np.array(getattr(self, name), dtype=float)) for name in names)
+        return replace(self, **{name: none_for_nan(one[..., points]) for name, one in every})
 
 
 def check_curve(curve: xr.Dataset) -> None:
@@ -146,9 +134,11 @@ def check_curve(curve: xr.Dataset) -> None:
         raise InputError("resonance curve: order 1 or its level is not finite; expected numbers")
 
 
-def none_for_nan(row: Floats) -> Numbers:
-    """Return numbers as a tuple with None for NaN, which would not be equal to itself."""
-    return tuple(value if math.isfinite(value) else None for value in row.tolist())
+def none_for_nan(values: Floats) -> tuple[Any, ...]:
+    """Return numbers as nested tuples with None for NaN, which would not be equal to itself."""
+    if values.ndim > 1:
+        return tuple(none_for_nan(row) for row in values)
+    return tuple(value if math.isfinite(value) else None for value in values.tolist())
 
 
 def half_power_damping(curve: xr.Dataset) -> float:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -197,18 +197,15 @@ def detect_all(
     if not isinstance(records, Mapping) or not records:
         raise InputError("records: expected one record or more, by names")
     rest = guess, checked_free_parameters(free), participation, checked_settings(settings)
-    jobs = [named_beam_job(name, record, *rest) for name, record in records.items()]
+    jobs = []
+    for name, record in records.items():
+        try:
+            jobs.append(replace(beam_job(record, *rest), name=name))
+        except InputError as error:
+            raise InputError(f"{name}: {error}") from None
     return dict(
         zip(records, compute_datasets(jobs, running, make_fmu_finder(running)), strict=True)
     )
-
-
-def named_beam_job(name: str, record: xr.Dataset | Sequence[xr.Dataset], *rest: Any) -> DetectJob:
-    """Return the job of one beam; a message about its records names it."""
-    try:
-        return replace(beam_job(record, *rest), name=name)
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
 
 
 def beam_job(

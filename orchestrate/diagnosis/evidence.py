@@ -54,17 +54,16 @@ def checked_participation(given: Participation, sensors: Sequence[str]) -> tuple
     return tuple(PARTICIPATION.check(given[name]) if name in given else None for name in sensors)
 
 
-def cut_channels_and_highest_frequency(orders: RecordOrders) -> tuple[Channels, float]:
-    """Cut channels to the time around the resonance; return them and the highest frequency."""
-    windows, channels = orders.windows, orders.channels
-    ratio = windows.frequency / orders.resonance
-    inside = np.flatnonzero((ratio > FITTED_RANGE[0]) & (ratio < FITTED_RANGE[1]))
-    begin = windows.parts[inside[0]].start - round((START_UP + 0.5) * channels.sample_rate)
+def part_around(windows: OrderWindows, inside: NDArray[np.intp], before: float) -> slice | None:
+    """Return the samples of some windows and from ``before`` s on; None where that is no cut."""
+    begin = windows.parts[inside[0]].start - round(before * windows.sample_rate)
     part = slice(max(begin, 0), windows.parts[inside[-1]].stop)
-    if len(inside) < MIN_WINDOWS or part.stop - part.start > MAX_CUT_SHARE * len(channels.time):
-        return channels, float(windows.frequency.max())
-    cut = replace(channels, time=channels.time[part], values=channels.values[:, part])
-    return cut, float(windows.frequency[inside].max())
+    is_cut = part.stop - part.start <= MAX_CUT_SHARE * windows.samples
+    return part if is_cut and len(inside) >= MIN_WINDOWS else None
+
+
+def cut_channels(channels: Channels, part: slice) -> Channels:
+    return replace(channels, time=channels.time[part], values=channels.values[:, part])
 
 
 @dataclass(frozen=True)
@@ -87,7 +86,12 @@ class Evidence:
         settings: Settings = SETTINGS,
     ) -> Evidence:
         """Build the evidence from a whole record's orders: cut and decimate it where possible."""
-        channels, highest = cut_channels_and_highest_frequency(orders)
+        channels, windows = orders.channels, orders.windows
+        ratio, highest = windows.frequency / orders.resonance, float(windows.frequency.max())
+        inside = np.flatnonzero((ratio > FITTED_RANGE[0]) & (ratio < FITTED_RANGE[1]))
+        if part := part_around(windows, inside, START_UP + 0.5):
+            channels = cut_channels(channels, part)
+            highest = float(windows.frequency[inside].max())
         thin = decimate(channels, highest, samples_per_period)
         if thin is not orders.channels:
             orders = compute_orders(thin)
@@ -102,18 +106,17 @@ class Evidence:
         low, high = (end([*self.peak_frequencies, moving]) for end in (min, max))
         ratio = self.orders.windows.frequency
         inside = np.flatnonzero((ratio > COARSE_RANGE[0] * low) & (ratio < COARSE_RANGE[1] * high))
-        parts, channels = self.orders.windows.parts, self.orders.channels
-        begin = parts[inside[0]].start - round((START_UP + 0.1) * self.sample_rate)
-        part = slice(max(begin, 0), parts[inside[-1]].stop)
-        if len(inside) < MIN_WINDOWS or part.stop - part.start > MAX_CUT_SHARE * self.sample_count:
+        part = part_around(self.orders.windows, inside, START_UP + 0.1)
+        if part is None:
             return self
+        parts = self.orders.windows.parts
         kept = np.flatnonzero([part.start <= p.start and p.stop <= part.stop for p in parts])
         nodes = self.pieces.nodes[part] - self.pieces.nodes[part.start]
         cubics = self.pieces.derivatives[part.start : part.stop - 1]
         pieces = replace(self.pieces, nodes=nodes, derivatives=cubics)
         orders = RecordOrders(
             self.orders.windows.cut_to_samples(kept, part),
-            replace(channels, time=channels.time[part], values=channels.values[:, part]),
+            cut_channels(self.orders.channels, part),
             self.orders.amplitude[:, :, kept],
             self.orders.floor[:, kept],
             self.orders.noise,
@@ -278,19 +281,15 @@ class Evidence:
         self, row: int, computed: Complexes, target: Complexes, count: int = 3
     ) -> Floats:
         """Return a sensor's gain, delay and participation in their deviations, by least squares."""
-        columns = self.order_1_changes_by_sensor(row, computed)[:count]
-        missed = (target - computed) / self.standard_deviation[row, 0]
-        normal = (columns @ columns.conj().T).real
-        normal += np.eye(count) * self.settings.prior_weight**2 * len(missed)  # nothing by chance
-        return np.asarray(np.linalg.solve(normal, (columns.conj() @ missed).real))
-
-    def order_1_changes_by_sensor(self, row: int, computed: Complexes) -> Complexes:
-        """Return the changes of order 1 by one deviation of gain, delay and participation."""
         allowed, is_given = self.settings, self.fixed_participation(row) is not None
         late = -1j * allowed.delay_deviation * TURN * self.frequency * computed
         part = 0.0 if is_given else allowed.participation_deviation
         changes = [allowed.gain_deviation * computed, late, part * (computed - self.base_orders[0])]
-        return np.stack(changes) / self.standard_deviation[row, 0]
+        columns = (np.stack(changes) / self.standard_deviation[row, 0])[:count]
+        missed = (target - computed) / self.standard_deviation[row, 0]
+        normal = (columns @ columns.conj().T).real
+        normal += np.eye(count) * self.settings.prior_weight**2 * len(missed)  # nothing by chance
+        return np.asarray(np.linalg.solve(normal, (columns.conj() @ missed).real))
 
     def fixed_participation(self, row: int) -> float | None:
         """Return a sensor's participation factor if it is not fitted, as stated or 1; else None."""

@@ -256,7 +256,8 @@ class Results:
 
     @classmethod
     def from_table(cls, job: SearchJob, table: Table) -> Results:
-        part = {name: table[f"end_{name}"][0] for name in END_COLUMNS}
+        ends = (name for name in table if name.startswith("end_"))
+        part = {name.removeprefix("end_"): table[name][0] for name in ends}
         real, imaginary = np.moveaxis(part.pop("fitted"), 1, 0)
         return cls(job, fitted=real + 1j * imaginary, **part)
 
@@ -406,12 +407,6 @@ def reported_derivatives(
         ends = [list(hypothesis.reported_parameters(one, evidence).values()) for one in moved]
         columns.append((np.array(ends[0]) - np.array(ends[1])) / (2.0 * step))
     return np.stack(columns, axis=1)
-
-
-END_COLUMNS = (
-    *("values", "covariance", "minima", "misfit", "residuals", "fitted"),
-    *("participation", "evaluations"),
-)
 
 
 def text_coordinate(dimension: str, values: Sequence[str], words: str) -> Variable:

@@ -190,26 +190,8 @@ def checked_base_and_faces(record: xr.Dataset) -> Channels:
 
 
 def compute_orders(channels: Channels) -> RecordOrders:
-    """Compute the orders of channels of a swept or stepped sine, and their floors."""
-    return orders_with_floors(
-        channels, *drop_windows_without_order_2(channels, *sine_windows_and_amplitudes(channels))
-    )
-
-
-def orders_with_floors(
-    channels: Channels, windows: OrderWindows, amplitude: Complexes
-) -> RecordOrders:
-    """Return a record's orders in windows, with their floors."""
-    whole, off = amplitude[:, : len(ORDERS)], amplitude[:, len(ORDERS) :]
-    squares = np.nanmean(np.abs(off) ** 2, axis=1)
-    floor = np.sqrt(np.stack([moving_average(row) for row in squares]))
-    return RecordOrders(windows, channels, whole, floor, np.quantile(floor, 0.2, axis=1))
-
-
-def drop_windows_without_order_2(
-    channels: Channels, windows: OrderWindows, amplitude: Complexes
-) -> tuple[OrderWindows, Complexes]:
-    """Drop the windows whose order 2 is above what the sampling rate resolves."""
+    """Compute orders of a swept or stepped sine, and floors, in windows that resolve order 2."""
+    windows, amplitude = sine_windows_and_amplitudes(channels)
     resolved = np.isfinite(amplitude[0, ORDERS.index(2.0)])
     rows = [row for row, name in enumerate(channels.names) if name != BOX]
     level = np.abs(amplitude[channels.names.index(BOX), 0])
@@ -220,7 +202,18 @@ def drop_windows_without_order_2(
         text = f"record: {text} {frequency:.3g} Hz, where it moves most"
         raise InputError(f"{text}; expected {2.0 / NYQUIST:.3g} or more, to read order 2")
     kept = np.flatnonzero(resolved)
-    return windows.select(kept, len(windows.orders)), amplitude[:, :, kept]
+    windows = windows.select(kept, len(windows.orders))
+    return orders_with_floors(channels, windows, amplitude[:, :, kept])
+
+
+def orders_with_floors(
+    channels: Channels, windows: OrderWindows, amplitude: Complexes
+) -> RecordOrders:
+    """Return a record's orders in windows, with their floors."""
+    whole, off = amplitude[:, : len(ORDERS)], amplitude[:, len(ORDERS) :]
+    squares = np.nanmean(np.abs(off) ** 2, axis=1)
+    floor = np.sqrt(np.stack([moving_average(row) for row in squares]))
+    return RecordOrders(windows, channels, whole, floor, np.quantile(floor, 0.2, axis=1))
 
 
 def moving_average(values: Floats, width: int = 5) -> Floats:
@@ -295,7 +288,11 @@ def least_squares_matrix(window: Window, sample_rate: float) -> Complexes:
     """Compute the least-squares matrix of a window, shape (orders, samples)."""
     orders = np.array([*ORDERS, *OFF_ORDERS])
     resolved = np.flatnonzero(orders * window.frequency <= NYQUIST * sample_rate)
-    waves = waves_of_orders_and_off_orders(window.phase)
+    half, off = np.exp(1j * np.outer((0.5, 0.37), window.phase))
+    first = half * half
+    second = first * first
+    third = second * first
+    waves = np.stack([first, second, third, half, first * off, second * off, third * off.conj()])
     moving = window.offset * waves[[row for row in resolved if orders[row] % 1.0 == 0.0]]
     waves = waves[resolved]
     parts = (waves.imag, waves.real, moving.imag, moving.real)
@@ -308,15 +305,6 @@ def least_squares_matrix(window: Window, sample_rate: float) -> Complexes:
     matrix = np.full((len(orders), len(window.offset)), np.nan, dtype=complex)
     matrix[resolved] = sine + 1j * cosine
     return matrix
-
-
-def waves_of_orders_and_off_orders(phase: Floats) -> Complexes:
-    """Return exp(i n phase) of each of `ORDERS`, then `OFF_ORDERS`, by products of two."""
-    half, off = np.exp(1j * np.outer((0.5, 0.37), phase))
-    first = half * half
-    second = first * first
-    third = second * first
-    return np.stack([first, second, third, half, first * off, second * off, third * off.conj()])
 
 
 def refer_to_base(box: Floats, window: Window, solution: Complexes) -> Complexes:
@@ -343,7 +331,11 @@ def split_sweeps(record: xr.Dataset) -> list[xr.Dataset]:
     frequency, time = windows.frequency, windows.time
     jumps = np.abs(np.diff(frequency)) > 0.2 * frequency[:-1]
     ends = np.flatnonzero(jumps | (np.diff(time) > 1.0)) + 1  # s without a sine
-    groups = [one for one in np.split(np.arange(len(time)), ends) if is_sweep(one, time, frequency)]
+    groups = [
+        one
+        for one in np.split(np.arange(len(time)), ends)
+        if np.ptp(time[one]) >= 2.0 and np.ptp(frequency[one]) >= 0.1 * frequency[one].mean()
+    ]
     if len(groups) < 2:
         return [record]
     parts = [slice(windows.parts[one[0]].start, windows.parts[one[-1]].stop) for one in groups]
@@ -352,9 +344,3 @@ def split_sweeps(record: xr.Dataset) -> list[xr.Dataset]:
         record.isel(time=part).assign_attrs(title=f"{title}, sweep {number}")
         for number, part in enumerate(parts, 1)
     ]
-
-
-def is_sweep(group: NDArray[np.intp], time: Floats, frequency: Floats) -> bool:
-    """Return whether a group of windows lasts long enough and covers enough frequencies."""
-    own = frequency[group]
-    return bool(np.ptp(time[group]) >= 2.0 and np.ptp(own) >= 0.1 * own.mean())

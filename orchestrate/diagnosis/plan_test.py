@@ -137,7 +137,10 @@ def plan_test(
         raise InputError("structure: bonded; expected a guess of the delaminated one")
     sound = SoundStructure.from_structure(structure)
     frequencies = default_sweep_range(structure) if frequencies is None else frequencies
-    first, *_, last = checked_ascending_frequencies(frequencies).tolist()
+    hertz = checked_positive_array("frequencies", frequencies, "Hz")
+    if len(hertz) < 2 or not (np.diff(hertz) > 0.0).all():
+        raise InputError(f"frequencies = {frequencies!r}: expected two at least, ascending, in Hz")
+    first, last = float(hertz[0]), float(hertz[-1])
     if levels is not None and g is not None:
         raise InputError("levels and g: expected one of them")
     if levels is None:
@@ -299,23 +302,16 @@ def recommended_levels(
     least = int(wrong[-1]) + 1 if len(wrong) else 0
     if least > top or not (usable & right)[least : top + 1].any():
         return float(levels[top]), float(levels[top]), False
-    chosen: list[float] = []
-    for factor, start in ((reserve, levels[least]), (2.0, None)):
-        wanted = factor * (chosen[-1] if start is None else start) * (1.0 - 1e-9)
-        above = [one for one in levels[: top + 1] if one >= wanted]
-        chosen.append(float(above[0] if above else levels[top]))
-    return chosen[0], chosen[1], True
+
+    def at_or_above(level: float) -> float:
+        above = levels[: top + 1][levels[: top + 1] >= level * (1.0 - 1e-9)]
+        return float(above[0] if len(above) else levels[top])
+
+    recommended = at_or_above(reserve * levels[least])
+    return recommended, at_or_above(2.0 * recommended), True
 
 
 # -- what is asked --------------------------------------------------------------------------------
-
-
-def checked_ascending_frequencies(frequencies: ArrayLike) -> Floats:
-    f = checked_positive_array("frequencies", frequencies, "Hz")
-    if len(f) < 2 or not (np.diff(f) > 0.0).all():
-        text = "expected two at least, ascending, in Hz"
-        raise InputError(f"frequencies = {frequencies!r}: {text}")
-    return f
 
 
 def checked_positive_array(name: str, values: ArrayLike, unit: str) -> Floats:

@@ -25,7 +25,7 @@ from .multistart import Search, Solution, difference_step, with_distinct_misfits
 from .opening_measures import OpeningMeasures, measure_opening
 from .order_windows import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, compute_orders
 from .settings import SETTINGS, Settings
-from .standard_errors import Estimate, estimate_with_errors
+from .standard_errors import estimate_with_errors
 
 MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 7, 8  # rows and columns of tables
 
@@ -182,7 +182,11 @@ class SearchJob(Job):
         starts = hypothesis.starts(self.evidence)
         worth = position < len(self.sound) or self.is_worth_a_search
         found = search.find_minima(starts) if worth else search.rank_starts(starts[:1])
-        return solutions_table(position, found, search.evaluations)
+        rows = np.full((1, MAX_SOLUTIONS, 1 + MAX_NUMBERS), np.nan)  # misfit, then the numbers
+        for row, one in zip(rows[0], found, strict=False):
+            row[: 1 + len(one.values)] = [one.misfit, *one.values.values()]
+        spent = np.array([float(search.evaluations)])
+        return {"place": np.array([position]), "solutions": rows, "evaluations": spent}
 
     def read_solutions(self, table: Table, position: int) -> list[Solution]:
         """Read the solutions of a hypothesis from a table, the best first."""
@@ -270,8 +274,7 @@ class SearchJob(Job):
         search, found = minima
         values, known = found[0].values, None
         if with_errors:
-            known = estimate_with_errors(search, values)
-            values = known.values
+            values, known = estimate_with_errors(search, values)
         motion = search.hypothesis.displacements(values, self.evidence, player)
         computed = self.evidence.sensor_orders(motion)
         residuals = self.evidence.residuals_of_orders(computed)
@@ -279,7 +282,7 @@ class SearchJob(Job):
         numbers[: len(values)] = list(values.values())
         covariance = np.full((MAX_NUMBERS, MAX_NUMBERS), np.nan)
         if known is not None:
-            covariance[: len(values), : len(values)] = known.covariance
+            covariance[: len(values), : len(values)] = known
         factors = participations_with_errors(search, values, motion, known)
         levels = np.full(MAX_MINIMA, np.nan)
         different = with_distinct_misfits(found, self.data.settings.distinct)[:MAX_MINIMA]
@@ -297,12 +300,12 @@ class SearchJob(Job):
 
 
 def participations_with_errors(
-    search: Search, values: Mapping[str, float], motion: Floats, known: Estimate | None
+    search: Search, values: Mapping[str, float], motion: Floats, covariance: Floats | None
 ) -> Floats:
     """Return the sensors' participation factors and their standard errors, shape (2, sensors)."""
     evidence = search.evidence
     here = evidence.fit_participations(motion)
-    if known is None:
+    if covariance is None:
         return np.stack([here, np.full(len(here), np.nan)])
     free = np.array([evidence.fixed_participation(row) is None for row in range(len(here))])
     slopes = []
@@ -312,15 +315,6 @@ def participations_with_errors(
         there = search.hypothesis.displacements(moved, evidence, search.player)
         slopes.append((evidence.fit_participations(there) - here) / step)
     slope = np.stack(slopes, axis=1)
-    variance = np.diag(slope @ known.covariance @ slope.T)
+    variance = np.diag(slope @ covariance @ slope.T)
     variance = variance + (evidence.settings.model_error * here) ** 2
     return np.stack([here, np.where(free, np.sqrt(variance), 0.0)])
-
-
-def solutions_table(position: int, solutions: Sequence[Solution], evaluations: int) -> Table:
-    """Convert solutions to a table, one row each: misfit, then values in the bounds' order."""
-    rows = np.full((1, MAX_SOLUTIONS, 1 + MAX_NUMBERS), np.nan)
-    for row, one in zip(rows[0], solutions, strict=False):
-        row[: 1 + len(one.values)] = [one.misfit, *one.values.values()]
-    spent = np.array([float(evaluations)])
-    return {"place": np.array([position]), "solutions": rows, "evaluations": spent}

@@ -27,17 +27,14 @@ it is 20 to 100 times too small.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
-from ..fmu import Player
 from ..laboratory.analysis.channels import BOX
 from ..laboratory.pieces import Floats
 from ..laboratory.sampled import Sampled
-from .evidence import Evidence
-from .hypotheses import Hypothesis
 from .misfit import LinearModel, misfit, soft_l1_loss
 from .multistart import Search, difference_step
 from .order_windows import ORDERS, RecordOrders
@@ -45,6 +42,7 @@ from .settings import Settings
 
 SEED = 20_241
 POINTS = 4  # of a cloud, a number: more than searches take (`Settings.points`)
+REPLICATES = 16  # of simulated noise
 # Of errors, measured; the halves are alike, so that a number of both has one factor. The errors of
 # both frequencies stay as they are: they hold the truth in 93 of 100 records
 CALIBRATION = {"log_zeta1": 2.9, "log_zeta2": 2.9, "e": 1.35}
@@ -52,20 +50,10 @@ CALIBRATION = {"log_zeta1": 2.9, "log_zeta2": 2.9, "e": 1.35}
 CURVE_CALIBRATION = {"common": 3.0, "split": 3.0, "log_zeta1": 5.8, "log_zeta2": 5.8, "e": 2.6}
 
 
-@dataclass(frozen=True)
-class Estimate:
-    """Hold fitted numbers with their covariance, and the standard deviations by each cause."""
-
-    values: dict[str, float]
-    covariance: Floats
-    # standard deviations by each by itself
-    noise: Floats
-    blocks: Floats
-    discrepancy: Floats
-
-
-def estimate_with_errors(search: Search, values: Mapping[str, float]) -> Estimate:
-    """Return the numbers at the minimum of the smoothed misfit, with their covariances."""
+def estimate_with_errors(
+    search: Search, values: Mapping[str, float]
+) -> tuple[dict[str, float], Floats]:
+    """Return the numbers at the minimum of the smoothed misfit, and their covariance."""
     here, bounds = dict(values), search.hypothesis.bounds(search.evidence)
     model = fit_linear_model_around(search, here)
     moved = model.damped_minima(bounds, here)[0]
@@ -73,14 +61,12 @@ def estimate_with_errors(search: Search, values: Mapping[str, float]) -> Estimat
     allowed = 1.05 if search.hypothesis.is_rugged else 1.0  # more is a step too far
     chosen = moved if after <= allowed * before else here
     lifted = chosen if search.evidence.has_floor else share_damping(chosen)
-    if lifted == chosen:
-        return estimate_with_covariances(search, chosen, model)
-    found = estimate_with_covariances(search, chosen, fit_linear_model_around(search, lifted))
+    if lifted != chosen:
+        model = fit_linear_model_around(search, lifted)
+    covariance = covariance_of_numbers(search, chosen, model)
     # what is linear in the damping ratios themselves, as errors of the logarithms that were fitted
-    scale = np.array(
-        [math.exp(lifted[n] - chosen[n]) if n.startswith("log_") else 1.0 for n in chosen]
-    )
-    return replace(found, covariance=found.covariance * np.outer(scale, scale))
+    scale = [math.exp(lifted[n] - chosen[n]) if n.startswith("log_") else 1.0 for n in chosen]
+    return chosen, covariance * np.outer(scale, scale)
 
 
 def fit_linear_model_around(search: Search, values: Mapping[str, float]) -> LinearModel:
@@ -105,16 +91,14 @@ def share_damping(values: Mapping[str, float]) -> dict[str, float]:
     return {**values, **dict(zip(names, np.log(shared).tolist(), strict=True))}
 
 
-def estimate_with_covariances(
-    search: Search, values: dict[str, float], model: LinearModel
-) -> Estimate:
-    """Compute the covariances of fitted numbers by noise, by blocks and by discrepancy."""
+def covariance_of_numbers(search: Search, values: dict[str, float], model: LinearModel) -> Floats:
+    """Compute the covariance of fitted numbers by noise, by blocks and by discrepancy."""
     count, rows, influence = len(values), model.weighted_slopes, model.minus_inverse_normal_matrix
-    residuals = search.residuals(values)
+    residuals, settings = search.residuals(values), search.evidence.settings
     if search.evidence.has_floor:
-        changes = simulate_noise_changes(search, values)
+        changes, known = simulate_noise_changes(search, values), CALIBRATION
     else:
-        changes = simulate_scatter_changes(residuals)
+        changes, known = simulate_scatter_changes(residuals), CURVE_CALIBRATION
     moved = np.stack([rows.T @ change.ravel() for change in changes])
     bumps = model.scatter @ rows
     by_noise = influence @ (moved.T @ moved / len(moved)) @ influence.T
@@ -124,17 +108,14 @@ def estimate_with_covariances(
     sums = np.stack([part.sum(axis=0) for part in parts])
     small = len(sums) / max(len(sums) - count, 1)
     by_blocks = small * influence @ (sums.T @ sums) @ influence.T
-    settings = search.evidence.settings
-    beyond = squares_beyond_noise(residuals, changes, settings.noise_squares)
-    known = CALIBRATION if search.evidence.has_floor else CURVE_CALIBRATION
     measured = np.diag([known.get(name, 1.0) for name in values])
     by_noise, by_blocks = (measured @ one @ measured for one in (by_noise, by_blocks))
+    squares_by_noise = float(np.mean([soft_l1_loss(change).sum() for change in changes]))
+    squares = float(soft_l1_loss(residuals).sum())
+    beyond = max(squares - settings.noise_squares * squares_by_noise, 0.0)
     hidden = contact_covariance(values, beyond / residuals.size, settings)
     hidden -= settings.hidden_share * beyond * influence
-    noise, blocks, rest = (
-        np.sqrt(np.maximum(np.diag(c), 0.0)) for c in (by_noise, by_blocks, hidden)
-    )
-    return Estimate(values, by_noise + by_blocks + hidden, noise, blocks, rest)
+    return by_noise + by_blocks + hidden
 
 
 def contact_covariance(values: Mapping[str, float], beyond: float, settings: Settings) -> Floats:
@@ -148,27 +129,24 @@ def contact_covariance(values: Mapping[str, float], beyond: float, settings: Set
     return np.diag([(size * doubt.get(name, 0.0)) ** 2 for name in values])
 
 
-def squares_beyond_noise(residuals: Floats, changes: list[Floats], factor: float) -> float:
-    """Return the sum of squared residuals (soft loss) beyond what noise explains."""
-    by_noise = float(np.mean([soft_l1_loss(change).sum() for change in changes]))
-    return max(float(soft_l1_loss(residuals).sum()) - factor * by_noise, 0.0)
-
-
 def simulate_noise_changes(search: Search, values: Mapping[str, float]) -> list[Floats]:
-    """Simulate noise of base and sensors; return the change of the residuals in each replicate."""
-    evidence, rng = search.evidence, np.random.default_rng(SEED)
-    sizes, names = sample_noise_of_channels(evidence.orders), evidence.orders.sensors
-    motion = search.hypothesis.displacements(values, evidence, search.player)
-    base = evidence.residuals_of_orders(evidence.sensor_orders(motion))
-    fit = search.hypothesis, values, search.player
+    """Simulate noise of base and sensors, of their floors' size; return changes of residuals."""
+    evidence, rng, hypothesis = search.evidence, np.random.default_rng(SEED), search.hypothesis
+    channels, count = evidence.orders.channels, evidence.sample_count
+    sizes = sample_noise_of_channels(evidence.orders)
+    motion = hypothesis.displacements(values, evidence, search.player)
+    before = evidence.residuals_of_orders(evidence.sensor_orders(motion))
     changes = []
-    for moved in simulate_motions_under_base_noise(evidence, fit, 16, rng):
+    for _ in range(REPLICATES):
+        base = channels.box + sizes[BOX] * rng.standard_normal(count)
+        pieces = Sampled(acceleration=tuple(base), sample_rate=evidence.sample_rate).pieces()
+        moved = hypothesis.displacements(values, replace(evidence, pieces=pieces), search.player)
         search.evaluations += 1
-        channels = [sizes[name] * rng.standard_normal(evidence.sample_count) for name in names]
-        read = evidence.windows.amplitudes(np.stack(channels))
+        noise = [sizes[name] * rng.standard_normal(count) for name in evidence.orders.sensors]
+        read = evidence.windows.amplitudes(np.stack(noise))
         # noise of what is read counts the other way: as if the motion had moved by less
         computed = evidence.correct_for_sensors(evidence.ideal_orders(moved) - read)
-        changes.append(evidence.residuals_of_orders(computed) - base)
+        changes.append(evidence.residuals_of_orders(computed) - before)
     return changes
 
 
@@ -178,21 +156,6 @@ def simulate_scatter_changes(residuals: Floats) -> list[Floats]:
     size = np.sqrt(np.mean(differences**2, axis=-1, keepdims=True) / 6.0)
     rng = np.random.default_rng(SEED)
     return [size * rng.standard_normal(residuals.shape) for _ in range(100)]
-
-
-def simulate_motions_under_base_noise(
-    evidence: Evidence,
-    fit: tuple[Hypothesis, Mapping[str, float], Player | None],
-    count: int,
-    rng: np.random.Generator,
-) -> Iterator[Floats]:
-    """Yield motions of a fit while the base moves with more noise, of the size of its floor."""
-    hypothesis, values, player = fit
-    size = sample_noise_of_channels(evidence.orders)[BOX]
-    for _ in range(count):
-        base = evidence.orders.channels.box + size * rng.standard_normal(evidence.sample_count)
-        pieces = Sampled(acceleration=tuple(base), sample_rate=evidence.sample_rate).pieces()
-        yield hypothesis.displacements(values, replace(evidence, pieces=pieces), player)
 
 
 def sample_noise_of_channels(orders: RecordOrders) -> dict[str, float]:
