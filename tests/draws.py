@@ -9,7 +9,7 @@ import numpy as np
 from orchestrate import Drive, Structure
 from orchestrate.weak_drive import averaged
 
-from .benches.recipe import Case, Conditions, draw, draw_log_uniform
+from .benches.recipe import Case, Conditions, draw_levels, draw_log_uniform
 
 USUAL, WIDE = (0.01, 0.05), (0.001, 0.1)  # noise of a record: usual of a laboratory, and any
 BEAMS = (  # kinds, one after the other: the two that the targets are about are drawn more often
@@ -99,4 +99,4 @@ def draw_beam(seed: int, number: int) -> Case:
     rng = np.random.default_rng([seed, number])
     kind = BEAMS[(seed + number) % len(BEAMS)]
     noise = USUAL if rng.random() < 0.6 else WIDE
-    return draw(rng, kind, Conditions(noise=noise, excitation="any"))
+    return draw_levels(rng, kind, Conditions(noise=noise, excitation="any"))[0]

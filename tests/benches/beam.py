@@ -99,43 +99,28 @@ class DelaminatedBeam:
         ]
         return self.length * np.append(np.concatenate(parts), 1.0)
 
-    @property
-    def is_delaminated(self) -> bool:
-        """Whether the beam has a delamination."""
-        return self.last > self.first
-
-    def is_inside(self, place: Floats) -> NDArray[np.bool_]:
-        """Return whether positions lie in the delamination, its ends included."""
-        margin = 1e-9
+    @cached_property
+    def inside(self) -> NDArray[np.bool_]:
+        """Whether nodes lie in the delamination, its ends included."""
+        share, margin = self.nodes / self.length, 1e-9
         low, high = self.first - margin, self.last + margin
-        share = place / self.length
-        return np.asarray(self.is_delaminated & (share >= low) & (share <= high))
+        return np.asarray((self.last > self.first) & (share >= low) & (share <= high))
 
     @cached_property
     def node_numbers(self) -> dict[tuple[int, int], int]:
         """Number of each pair (layer, node); layer 0 is the whole beam, 1 and 2 its halves."""
-        inside = self.is_inside(self.nodes)
-        pairs = []
-        for i, split in enumerate(inside):
-            pairs += [(1, i), (2, i)] if split else [(0, i)]
+        layers = [(1, 2) if split else (0,) for split in self.inside]
+        pairs = [(layer, node) for node, some in enumerate(layers) for layer in some]
         return {pair: number for number, pair in enumerate(pairs)}
-
-    def layer_height(self, layer: int) -> float:
-        """Return the height of a layer's axis above the whole beam's, m."""
-        return {0: 0.0, 1: 1.0 - self.share, 2: -self.share}[layer] * 0.5 * self.thickness
-
-    def sections(self) -> dict[int, Section]:
-        """Return the sections by layer: whole beam, upper half, lower half."""
-        return {i: self.section(s) for i, s in enumerate((1.0, self.share, 1.0 - self.share))}
 
     @cached_property
     def matrices(self) -> tuple[Floats, Floats, Floats]:
         """Return stiffness, mass matrix and base excitation of the free displacements."""
         size = 3 * len(self.node_numbers)
         stiffness, inertia = np.zeros((size, size)), np.zeros((size, size))
-        sections, inside = self.sections(), self.is_inside(self.nodes)
+        sections = [self.section(share) for share in (1.0, self.share, 1.0 - self.share)]
         for i, length in enumerate(np.diff(self.nodes)):
-            for layer in (1, 2) if inside[i] and inside[i + 1] else (0,):
+            for layer in (1, 2) if self.inside[i] and self.inside[i + 1] else (0,):
                 to = np.concatenate([self.node_selector(layer, node) for node in (i, i + 1)])
                 used = np.flatnonzero(to.any(axis=0))
                 to, where = to[:, used], np.ix_(used, used)
@@ -147,38 +132,40 @@ class DelaminatedBeam:
 
     def node_selector(self, layer: int, node: int) -> Floats:
         """Return the (3, all) matrix of a layer's, else of layer 1's displacements at a node."""
-        size = 3 * len(self.node_numbers)
-        known = (layer, node) in self.node_numbers
-        number = self.node_numbers[layer, node] if known else self.node_numbers[1, node]
-        matrix = np.zeros((3, size))
-        matrix[:, 3 * number : 3 * number + 3] = np.eye(3)
-        if not known:  # the axial displacement at the height z is u - z slope
-            matrix[AXIAL, 3 * number + SLOPE] = self.layer_height(1) - self.layer_height(layer)
+        number = self.node_numbers.get((layer, node))
+        if number is None:
+            return self.selector_by_layer_1(layer, node)
+        return np.eye(3, 3 * len(self.node_numbers), 3 * number)
+
+    def selector_by_layer_1(self, layer: int, node: int) -> Floats:
+        """Return the same of a layer whose cross-section at a node is that of layer 1."""
+        above = 3 * self.node_numbers[1, node]
+        heights = (0.0, 1.0 - self.share, -self.share)  # of the axes, above the whole beam's
+        matrix = np.eye(3, 3 * len(self.node_numbers), above)
+        # the axial displacement at the height z is u - z slope
+        of_1, own = (0.5 * self.thickness * heights[one] for one in (1, layer))
+        matrix[AXIAL, above + SLOPE] = of_1 - own
         return matrix
 
     def constraint_matrix(self) -> Floats:
         """Return the (all, free) matrix of the constraints by clamps and delamination tips."""
-        size = 3 * len(self.node_numbers)
-        matrix, dropped = np.eye(size), []
-        inside, last = self.is_inside(self.nodes), len(self.nodes) - 1
-        clamped = {0, last} if self.clamped_both else {0}
+        matrix, dropped = np.eye(3 * len(self.node_numbers)), []
+        clamped = {0, len(self.nodes) - 1} if self.clamped_both else {0}
         for (layer, node), number in self.node_numbers.items():
             own = slice(3 * number, 3 * number + 3)
             if node in clamped:
                 matrix[own] = 0.0
-                dropped += [3 * number + i for i in range(3)]
-            elif layer == 2 and self.is_tip(node, inside):
-                above = 3 * self.node_numbers[1, node]
-                matrix[own] = matrix[above : above + 3]
-                matrix[own.start, above + SLOPE] = self.layer_height(1) - self.layer_height(2)
-                dropped += [3 * number + i for i in range(3)]
+            elif layer == 2 and self.is_tip(node):
+                matrix[own] = self.selector_by_layer_1(layer, node)
+            else:
+                continue
+            dropped += range(own.start, own.stop)
         return np.delete(matrix, dropped, axis=1)
 
-    def is_tip(self, node: int, inside: NDArray[np.bool_]) -> bool:
+    def is_tip(self, node: int) -> bool:
         """Return whether the delamination ends at a node inside the beam."""
-        before = node > 0 and not inside[node - 1]
-        after = node < len(inside) - 1 and not inside[node + 1]
-        return bool(inside[node] and (before or after))
+        around = self.inside[max(node - 1, 0) : node + 2]
+        return bool(self.inside[node]) and not around.all()
 
     def modes(self, count: int) -> tuple[Floats, Floats, Floats]:
         """Compute the lowest modes without contact; return frequencies, shapes, participations."""
@@ -188,11 +175,9 @@ class DelaminatedBeam:
 
     def deflection_rows(self, shapes: Floats, layer: int, places: Floats) -> Floats:
         """Return a layer's deflections at positions by modes, shape (places, modes)."""
-        values = []
-        for node in range(len(self.nodes)):
-            known = (layer, node) if (layer, node) in self.node_numbers else (0, node)
-            values.append(shapes[3 * self.node_numbers[known] + DEFLECTION])
-        table = np.array(values)
+        known = self.node_numbers
+        pairs = [(layer if (layer, node) in known else 0, node) for node in range(len(self.nodes))]
+        table = shapes[[3 * known[pair] + DEFLECTION for pair in pairs]]
         return np.array([np.interp(places, self.nodes, column) for column in table.T]).T
 
     def single_mass_position(self) -> float:
@@ -209,7 +194,6 @@ class DelaminatedBeam:
         zeta: float = 0.008,
         modes: int = 16,
         sensor: float | None = None,
-        contact_every: int = 1,
     ) -> ModalSystem:
         """Return the beam as a ``ModalSystem`` with contacts at the delamination's nodes."""
         frequency, shapes, participation = self.modes(modes)
@@ -220,14 +204,13 @@ class DelaminatedBeam:
             damping_ratio=np.full(modes, zeta),
             participation=participation,
             output_rows=np.array(faces_rows),
-            contacts=self.contacts(faces, shapes, contact_every),
+            contacts=self.contacts(faces, shapes),
         )
 
-    def contacts(self, faces: Faces, shapes: Floats, every: int) -> Contacts | None:
+    def contacts(self, faces: Faces, shapes: Floats) -> Contacts | None:
         """Return contacts between node pairs in the delamination; None without one."""
-        inside = self.is_inside(self.nodes)
-        apart = [i for i, split in enumerate(inside) if split and not self.is_tip(i, inside)]
-        pairs = [i for i in reversed(apart) if i > 0][::every]
+        apart = [int(i) for i in np.flatnonzero(self.inside) if i > 0 and not self.is_tip(i)]
+        pairs = apart[::-1]
         if not pairs:
             return None
         numbers = self.node_numbers
@@ -235,7 +218,7 @@ class DelaminatedBeam:
         upper, lower = (shapes[row] for row in rows)
         upper_part, lower_part = self.section(self.share), self.section(1.0 - self.share)
         mass = upper_part.mass * lower_part.mass / (upper_part.mass + lower_part.mass)
-        mass *= every * self.length / self.elements
+        mass *= self.length / self.elements
         return faces.contacts(upper - lower, np.full(len(pairs), faces.clearance), mass)
 
 

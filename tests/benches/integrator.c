@@ -26,11 +26,9 @@ typedef struct {
     const double *spring_rows, *cubic, *offset;
     const double *friction_rows, *friction_force, *friction_coefficient, *friction_speed;
     const double *output_rows;
-    double longest_impact;  /* s: contacts that last longer are no impacts */
 } System;
 
-/* What is kept of a contact while the motion goes on. */
-typedef struct { double largest_gap, largest_force, time_open, impacts, speed_in, speed_out, entered_at, entered_with; } Contact;
+typedef struct { double gap, force; } Largest;  /* of a contact */
 
 static double along(const double *row, const double *q, int n) {
     double sum = 0.0;
@@ -80,43 +78,25 @@ static double accelerate(const System *s, const double *q, const double *v, doub
     return pressed;
 }
 
-static void observe(const System *s, const double *q, const double *v, double time, double h, Contact *contacts, double *peaks) {
+static void observe(const System *s, const double *q, const double *v, Largest *largest) {
     int n = s->modes;
     for (int c = 0; c < s->contacts; c++) {
         const double *row = s->contact_rows + c * n;
-        Contact *now = contacts + c;
-        double gap = along(row, q, n) + s->clearance[c], speed = along(row, v, n);
-        double force = contact_force(s, c, -gap, -speed);
-        if (gap > now->largest_gap) now->largest_gap = gap;
-        if (force > now->largest_force) now->largest_force = force;
-        if (gap > 0.0) {
-            now->time_open += h;
-            if (now->entered_at >= 0.0 && time - now->entered_at < s->longest_impact && now->entered_with > 0.0 && speed > 0.0) {
-                now->impacts += 1.0;
-                now->speed_in += now->entered_with;
-                now->speed_out += speed;
-            }
-            now->entered_at = -1.0;
-        } else if (now->entered_at < 0.0) {
-            now->entered_at = time;
-            now->entered_with = -speed;
-        }
-    }
-    for (int k = 0; k < s->springs; k++) {
-        double x = fabs(along(s->spring_rows + k * n, q, n));
-        if (x > peaks[k]) peaks[k] = x;
+        double gap = along(row, q, n) + s->clearance[c], force = contact_force(s, c, -gap, -along(row, v, n));
+        if (gap > largest[c].gap) largest[c].gap = gap;
+        if (force > largest[c].force) largest[c].force = force;
     }
 }
 
 /* `base`: acceleration at the ends and the middle of all steps, 2 steps + 1 numbers; `out`: relative accelerations of the outputs at the
  * steps' ends, (steps + 1) x outputs, or NULL. Returns the steps done: fewer where the motion escapes. */
-EXPORT long run(const System *s, long steps, double h, const double *base, double *q, double *v, double *out, Contact *contacts, double *peaks) {
+EXPORT long run(const System *s, long steps, double h, const double *base, double *q, double *v, double *out, Largest *largest) {
     int n = s->modes;
     double x[MOST_MODES], y[MOST_MODES], a1[MOST_MODES], a2[MOST_MODES], a3[MOST_MODES], a4[MOST_MODES], u2[MOST_MODES], u3[MOST_MODES];
     if (n > MOST_MODES || s->contacts > MOST_CONTACTS) return -1;
     for (long step = 0; ; step++) {
         const double *b = base + 2 * step;
-        observe(s, q, v, (double)step * h, h, contacts, peaks);
+        observe(s, q, v, largest);
         accelerate(s, q, v, b[0], a1);
         if (out) for (int k = 0; k < s->outputs; k++) out[step * s->outputs + k] = along(s->output_rows + k * n, a1, n);
         if (step == steps) return steps;

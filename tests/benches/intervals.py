@@ -11,17 +11,17 @@ import numpy as np
 from orchestrate import fit
 from orchestrate.diagnosis.settings import SETTINGS
 
-from .recipe import SPLIT, draw
+from .recipe import SPLIT, draw_levels
 
 NAMES = ("f1", "f2", "zeta1", "zeta2")
 
 
 def judged_fit(seed: int, kind: str, number: int) -> dict[str, Any]:
     """Draw a beam that is delaminated, fit two masses to its record, and compare with the truth."""
-    case = draw(np.random.default_rng([seed, SPLIT.index(kind), number]), kind)
+    (case,) = draw_levels(np.random.default_rng([seed, SPLIT.index(kind), number]), kind)
     answer = fit(case.record, case.guess, jobs=1, progress=False)
     truth, found = case.truth, answer.reindex(parameter=list(NAMES))
-    true = {name: getattr(truth, name) for name in NAMES}
+    true = {name: getattr(truth.halves, name) for name in NAMES}
     numbers = {"value": found.value.values.tolist(), "error": found.standard_error.values.tolist()}
     opened = {"sensors": truth.setup.sensors, "opened": truth.opened, "mm": 1e3 * truth.seen_gap}
     return {**numbers, **opened, "true": true, "misfit": float(answer.misfit)}

@@ -38,8 +38,9 @@ class Faces:
         if self.law == "hertz":  # as deep at the speed as the linear spring
             stiffness *= 1.25 / math.sqrt(self.speed / w)
         count = len(rows)
-        forces = np.full(count, stiffness), np.full(count, damping)
-        return Contacts(rows, clearance, *forces, self.law, 1.5 / self.frequency)
+        return Contacts(
+            rows, clearance, np.full(count, stiffness), np.full(count, damping), self.law
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,8 +155,3 @@ def in_rattling_clamp(own: ModalSystem, mass: float, clamp: Clamp) -> ModalSyste
 def cubic_stiffness(change: float, f: float, amplitude: float) -> float:
     """Return the cubic stiffness over mass, N/(kg m3), for a relative change of frequency."""
     return 4.0 / 3.0 * (TURN * f) ** 2 * ((1.0 + change) ** 2 - 1.0) / amplitude**2
-
-
-def frequency_change(cubic: float, f: float, amplitude: float) -> float:
-    """Return the relative change of frequency by a cubic spring at an amplitude, m."""
-    return math.sqrt(max(1.0 + 0.75 * cubic * amplitude**2 / (TURN * f) ** 2, 0.0)) - 1.0

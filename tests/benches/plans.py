@@ -21,8 +21,8 @@ def judged_plan(seed: int, kind: str, number: int) -> dict[str, Any]:
     """Draw a structure, plan its test with a guess, and test it and its bonded form so."""
     rng = np.random.default_rng([seed, SPLIT.index(kind), number])
     own = KINDS[kind](rng, draw_log_uniform(rng, *LEVEL), Conditions())
-    halves = {name: getattr(own, name) for name in ("m1", "m2", "f1", "f2", "zeta1", "zeta2")}
-    structure = Structure.from_halves(**halves, e=rng.uniform(0.35, 0.85), clearance=own.clearance)
+    restitution = rng.uniform(0.35, 0.85)
+    structure = Structure.from_halves(**vars(own.halves), e=restitution, clearance=own.clearance)
     near = own.clearance * rng.uniform(1.0 - OFF_CLEARANCE, 1.0 + OFF_CLEARANCE)
     guess = draw_guess(rng, own, OFF).replace(clearance=near)
     every, answers = default_sensor(default_sweep_range(guess)[1]), {}

@@ -17,7 +17,7 @@ from .beam import DelaminatedBeam
 from .bench import Bench
 from .excitation import Random, Stepped, Swept
 from .integrator import UnboundedMotionError
-from .lumped import Clamp, Faces, Halves, cubic_stiffness, frequency_change, in_rattling_clamp
+from .lumped import Clamp, Faces, Halves, cubic_stiffness, in_rattling_clamp
 from .sensors import Sensor
 from .system import ModalSystem, Motion
 
@@ -47,18 +47,8 @@ class Truth:
     is_delaminated: bool
     opened: bool  # whether the faces parted by more than `OPENED` in the record
     touched: bool  # whether they touched
-    # of both halves alone, Hz and 1; of a sound beam both are those of the whole
-    f1: float
-    f2: float
-    zeta1: float
-    zeta2: float
-    clearance: float = 0.0  # m
-    # mean over the impacts; NaN where there was none, and of finite elements
-    restitution: float = math.nan
-    largest_gap: float = 0.0  # m
+    halves: Halves  # of a sound beam the frequencies and damping of both are those of the whole
     seen_gap: float = 0.0  # m: of the faces at the sensors
-    # relative change of the frequency at the largest deflection, of a beam that hardens
-    change: float = 0.0
     size: float = math.nan  # length of the delamination over that of the beam; NaN for two masses
     setup: Setup
 
@@ -77,14 +67,8 @@ class Specimen:
     """A beam's modal system, and its true masses, frequencies and damping."""
 
     system: ModalSystem
-    m1: float
-    m2: float
-    f1: float
-    f2: float
-    zeta1: float
-    zeta2: float
+    halves: Halves
     clearance: float = 0.0
-    cubic: float = 0.0
     size: float = math.nan
     sound: bool = False
 
@@ -129,39 +113,38 @@ def draw_halves(rng: np.random.Generator) -> Halves:
     return Halves(m1=m1, m2=m2, f1=f1, f2=f2, zeta1=damping, zeta2=second)
 
 
-def draw_contact_law(rng: np.random.Generator, clearance: float = 0.0) -> Faces:
+def draw_contact_law(rng: np.random.Generator) -> Faces:
     """Draw a contact law; one in four slides with friction."""
     return Faces(
         law=str(rng.choice(["linear", "hunt-crossley", "hertz"])),
         frequency=draw_log_uniform(rng, 500.0, 1500.0),
         restitution=rng.uniform(0.35, 0.85),
-        clearance=clearance,
         friction=rng.uniform(0.0, 0.3) if rng.random() < 0.25 else 0.0,
     )
 
 
-def two_mass_specimen(own: Halves, touching: Faces) -> Specimen:
-    """Return a specimen of two masses that touch by a contact law."""
-    numbers = (own.m1, own.m2, own.f1, own.f2, own.zeta1, own.zeta2)
-    return Specimen(own.delaminated(touching), *numbers, touching.clearance)
-
-
-def bonded_specimen(own: Halves, system: ModalSystem, cubic: float = 0.0) -> Specimen:
+def bonded_specimen(own: Halves, system: ModalSystem) -> Specimen:
     """Return a specimen of a bonded beam with its modal system."""
     one = own.bonded_beam()
-    numbers = (own.m1, own.m2, one.f, one.f, one.zeta, one.zeta)
-    return Specimen(system, *numbers, cubic=cubic, sound=True)
+    whole = replace(own, f1=one.f, f2=one.f, zeta1=one.zeta, zeta2=one.zeta)
+    return Specimen(system, whole, sound=True)
+
+
+def two_mass_specimen(rng: np.random.Generator, own: Halves, clearance: float = 0.0) -> Specimen:
+    """Return a specimen of two masses that touch by a contact law, which is drawn."""
+    faces = replace(draw_contact_law(rng), clearance=clearance)
+    return Specimen(own.delaminated(faces), own, clearance)
 
 
 def draw_delaminated(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
     """Draw a specimen of two halves that touch at rest without force."""
-    return two_mass_specimen(draw_halves(rng), draw_contact_law(rng))
+    return two_mass_specimen(rng, draw_halves(rng))
 
 
 def draw_with_gap(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
     """Draw a specimen of two halves with a gap of 0.1 to 2 mm at rest."""
     own, clearance = draw_halves(rng), draw_log_uniform(rng, 1e-4, 2e-3)
-    return two_mass_specimen(own, draw_contact_law(rng, clearance))
+    return two_mass_specimen(rng, own, clearance)
 
 
 def draw_preloaded(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
@@ -172,7 +155,7 @@ def draw_preloaded(rng: np.random.Generator, level: float, conditions: Condition
     peak = level / (2.0 * one.zeta)  # acceleration over the base
     force = own.m1 * peak * abs((own.f1 / one.f) ** 2 - 1.0)
     clearance = -rng.uniform(*conditions.preload) * force * (1.0 / k1 + 1.0 / k2)
-    return two_mass_specimen(own, draw_contact_law(rng, clearance))
+    return two_mass_specimen(rng, own, clearance)
 
 
 def draw_sound(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
@@ -188,7 +171,7 @@ def draw_hardening(rng: np.random.Generator, level: float, conditions: Condition
     change = rng.uniform(0.03, 0.3) if rng.random() < 0.7 else -rng.uniform(0.02, 0.15)
     peak = level / (2.0 * one.zeta * (TURN * one.f) ** 2 * (1.0 + change))
     cubic = cubic_stiffness(change, one.f, peak)
-    return bonded_specimen(own, own.bonded(cubic=cubic), cubic)
+    return bonded_specimen(own, own.bonded(cubic=cubic))
 
 
 def draw_sagging(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
@@ -198,9 +181,9 @@ def draw_sagging(rng: np.random.Generator, level: float, conditions: Conditions)
     change = rng.uniform(0.02, 0.15)
     peak = level / (2.0 * one.zeta * (TURN * one.f) ** 2 * (1.0 + change))
     cubic, sag = cubic_stiffness(change, one.f, peak), peak * rng.uniform(0.1, 0.5)
-    specimen = bonded_specimen(own, own.bonded(cubic=cubic, sag=sag), cubic)
-    stiffer = math.sqrt(1.0 + 3.0 * cubic * sag**2 / (TURN * one.f) ** 2)
-    return replace(specimen, f1=one.f * stiffer, f2=one.f * stiffer)
+    specimen = bonded_specimen(own, own.bonded(cubic=cubic, sag=sag))
+    f = one.f * math.sqrt(1.0 + 3.0 * cubic * sag**2 / (TURN * one.f) ** 2)
+    return replace(specimen, halves=replace(specimen.halves, f1=f, f2=f))
 
 
 def draw_with_friction(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
@@ -254,9 +237,9 @@ def draw_place(
 
 def shut_frequency(system: ModalSystem) -> float:
     """Return the lowest natural frequency of a system whose contacts are closed, Hz."""
+    contacts = system.contacts
     closed = np.diag(system.frequency**2)
-    if contacts := system.contacts:
-        closed += contacts.rows.T * contacts.stiffness @ contacts.rows
+    closed += contacts.rows.T * contacts.stiffness @ contacts.rows
     return math.sqrt(float(np.linalg.eigvalsh(closed)[0])) / TURN
 
 
@@ -274,7 +257,8 @@ def draw_finite_elements(
     system = beam.system(touching, zeta, modes=12, sensor=draw_place(rng, beam, conditions))
     f1, shut = float(system.frequency[0]) / TURN, shut_frequency(system)
     f2 = math.sqrt((shut**2 - share * f1**2) / (1.0 - share))
-    return Specimen(system, share, 1.0 - share, f1, f2, zeta, zeta, size=size)
+    halves = Halves(m1=share, m2=1.0 - share, f1=f1, f2=f2, zeta1=zeta, zeta2=zeta)
+    return Specimen(system, halves, size=size)
 
 
 def draw_intact_finite_elements(
@@ -288,7 +272,8 @@ def draw_intact_finite_elements(
     f = float(system.frequency[0]) / TURN
     if not clamped:
         system = in_rattling_clamp(system, beam.section(1.0).mass * beam.length, draw_clamp(rng))
-    return Specimen(system, 0.5, 0.5, f, f, zeta, zeta, sound=True, size=0.0)
+    halves = Halves(m1=0.5, m2=0.5, f1=f, f2=f, zeta1=zeta, zeta2=zeta)
+    return Specimen(system, halves, sound=True, size=0.0)
 
 
 Maker = Callable[[np.random.Generator, float, Conditions], Specimen]
@@ -329,14 +314,15 @@ def draw_sensor(rng: np.random.Generator, noise: float, bandwidth: float) -> Sen
     return Sensor(bandwidth=bandwidth, gain=gain, delay=delay, noise=noise)
 
 
-def draw_guess(rng: np.random.Generator, own: Specimen, off: float) -> Structure:
+def draw_guess(rng: np.random.Generator, beam: Specimen, off: float) -> Structure:
     """Draw a guess: true masses and frequencies with relative errors, damping by up to 2."""
 
     def near(value: float) -> float:
         return value * float(rng.uniform(1.0 - off, 1.0 + off))
 
+    own = beam.halves
     f1, f2 = own.f1, min(own.f2, MOST_APART * own.f1)
-    if own.sound:
+    if beam.sound:
         apart = math.sqrt(rng.uniform(1.06, 1.4))
         f1, f2 = f1 / apart, f2 * apart
     return Structure.from_halves(
@@ -350,27 +336,15 @@ def draw_guess(rng: np.random.Generator, own: Specimen, off: float) -> Structure
     )
 
 
-def draw(
-    rng: np.random.Generator,
-    kind: str,
-    conditions: Conditions | None = None,
-    rate: float = 2000.0,
-    kinds: Mapping[str, Maker] = KINDS,
-) -> Case:
-    """Draw a beam and a bench and measure it; return record, guess and truth as a ``Case``."""
-    return draw_levels(rng, kind, conditions, rate, kinds)[0]
-
-
 def draw_levels(
     rng: np.random.Generator,
     kind: str,
-    conditions: Conditions | None = None,
+    conditions: Conditions = Conditions(),
     rate: float = 2000.0,
     kinds: Mapping[str, Maker] = KINDS,
     times: Sequence[float] = (1.0,),
 ) -> list[Case]:
     """Draw a beam and a bench, and measure it at multiples of the level it is drawn for."""
-    conditions = conditions or Conditions()
     level = draw_log_uniform(rng, *conditions.level)
     noise = draw_log_uniform(rng, *conditions.noise)
     name, shaker = draw_excitation(rng, conditions.excitation, level)
@@ -406,32 +380,23 @@ def draw_levels(
 
 def gap_at_sensors(system: ModalSystem, motion: Motion) -> float:
     """Return the largest gap, m, of the contact next to the sensors; 0 where no face parts."""
-    apart = system.output_rows[0] - system.output_rows[-1]
-    if system.contacts is None or not apart.any():
+    apart, rows = system.output_rows[0] - system.output_rows[-1], system.contacts.rows
+    if not (len(rows) and apart.any()):
         return 0.0
-    away = [np.linalg.norm(system.contacts.rows + sign * apart, axis=1) for sign in (1.0, -1.0)]
+    away = [np.linalg.norm(rows + sign * apart, axis=1) for sign in (1.0, -1.0)]
     return float(motion.largest_gap[np.minimum(*away).argmin()])
 
 
 def make_truth(kind: str, own: Specimen, motion: Motion, setup: Setup) -> Truth:
     """Return the truth of a specimen, from how it was drawn and how it moved."""
-    two_masses = math.isnan(own.size) and len(motion.restitution) == 1
-    peak = float(motion.spring_peaks.max()) if own.cubic else 0.0
-    gap = float(motion.largest_gap.max()) if len(motion.largest_gap) else 0.0
+    opened, touched = (motion.largest_gap > OPENED).any(), (motion.largest_force > 0.0).any()
     return Truth(
         kind=kind,
         is_delaminated=not own.sound,
-        opened=not own.sound and gap > OPENED,
-        touched=not own.sound and bool((motion.largest_force > 0.0).any()),
-        f1=own.f1,
-        f2=own.f2,
-        zeta1=own.zeta1,
-        zeta2=own.zeta2,
-        clearance=own.clearance,
-        restitution=float(motion.restitution[0]) if two_masses else math.nan,
-        largest_gap=gap,
+        opened=not own.sound and bool(opened),
+        touched=not own.sound and bool(touched),
+        halves=own.halves,
         seen_gap=gap_at_sensors(own.system, motion),
-        change=frequency_change(own.cubic, own.f1, peak),
         size=own.size,
         setup=setup,
     )

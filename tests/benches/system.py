@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +22,6 @@ class Contacts:
     stiffness: Floats
     damping: Floats
     law: str = "linear"
-    # s; a contact that lasts longer is no impact, and not counted for the restitution
-    longest_impact: float = 2e-3
 
 
 @dataclass(frozen=True)
@@ -48,17 +46,6 @@ class Frictions:
     speed: Floats  # m/s: the force is `F v/sqrt(v**2 + speed**2)`
 
 
-def empty_contacts(modes: int) -> Contacts:
-    """Return a ``Contacts`` without any contact, for a number of modes."""
-    empty = np.zeros(0)
-    return Contacts(np.zeros((0, modes)), empty, empty, empty)
-
-
-def empty_springs(modes: int) -> CubicSprings:
-    """Return a ``CubicSprings`` without any spring, for a number of modes."""
-    return CubicSprings(np.zeros((0, modes)), np.zeros(0), np.zeros(0))
-
-
 @dataclass(frozen=True)
 class ModalSystem:
     """A linear structure as mass-normalised modes, with its nonlinear forces."""
@@ -67,9 +54,17 @@ class ModalSystem:
     damping_ratio: Floats
     participation: Floats  # `-participation * a` is the modal force of the base's acceleration a
     output_rows: Floats  # (outputs, modes): absolute acceleration is `a + output_rows @ q''`
-    contacts: Contacts | None = None
-    springs: CubicSprings | None = None
-    frictions: Frictions | None = None
+    contacts: Contacts = None  # type: ignore[assignment]  # None: without any
+    springs: CubicSprings = None  # type: ignore[assignment]
+    frictions: Frictions = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        rows, empty = np.zeros((0, self.modes)), np.zeros(0)
+        for name, kind in (("contacts", Contacts), ("frictions", Frictions)):
+            if getattr(self, name) is None:
+                object.__setattr__(self, name, kind(rows, empty, empty, empty))
+        if self.springs is None:
+            object.__setattr__(self, "springs", CubicSprings(rows, empty, empty))
 
     @property
     def modes(self) -> int:
@@ -79,7 +74,7 @@ class ModalSystem:
 
 @dataclass(frozen=True)
 class Motion:
-    """Result of an integration: accelerations, peaks, gaps, impacts and restitution."""
+    """Result of an integration: accelerations, the state at the end, gaps and forces."""
 
     # (outputs, steps + 1), absolute acceleration, m/s2, at the ends of all steps
     acceleration: Floats
@@ -89,9 +84,3 @@ class Motion:
     # of each contact, m and N
     largest_gap: Floats
     largest_force: Floats
-    time_open: Floats  # s
-    impacts: Floats  # contacts that were short
-    restitution: Floats  # sum of speeds after these over that before them; NaN without any
-    closing_speed: Floats  # mean before an impact, m/s; NaN without any
-    # largest absolute deflection of each cubic spring, m
-    spring_peaks: Floats = field(default_factory=lambda: np.zeros(0))

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 from tests.benches.integrator import equilibrium, integrate
-from tests.benches.lumped import TURN, Faces, Halves, cubic_stiffness, frequency_change
+from tests.benches.lumped import TURN, Faces, Halves, cubic_stiffness
 from tests.benches.recipe import OPENED
 
 HALVES = Halves(zeta1=0.03, zeta2=0.03)
@@ -54,14 +54,17 @@ def reference(system, base, times):
 
 
 def speeds(system, base, times, parts):
-    """The same by the benches' integration, each time ``parts`` steps after the one before."""
+    """The same by the benches' integration, each time ``parts`` steps after the one before; in
+    how many of the times between the faces touch, and part.
+    """
     step = float(times[1] - times[0]) / parts
-    q, v, found, impacts = equilibrium(system), np.zeros(2), [np.zeros(2)], 0.0
+    q, v, found, struck = equilibrium(system), np.zeros(2), [np.zeros(2)], 0
     for begin in times[:-1]:
         moved = integrate(system, base(begin + 0.5 * step * np.arange(2 * parts + 1)), step, q, v)
-        q, v, impacts = moved.position, moved.velocity, impacts + moved.impacts[0]
+        q, v = moved.position, moved.velocity
+        struck += moved.largest_gap[0] > 0.0 and moved.largest_force[0] > 0.0
         found.append(v)
-    return np.array(found).T, impacts
+    return np.array(found).T, struck
 
 
 @pytest.mark.parametrize(("law", "clearance"), [*zip(LAWS, CLEARANCES, strict=True)])
@@ -78,8 +81,8 @@ def test_motion_with_contact_is_that_of_an_adaptive_method(law, clearance):
 
     known, worst = reference(system, base, times), []
     for steps in (60, 240):
-        found, impacts = speeds(system, base, times, round(steps * 1000.0 * float(times[1])))
-        assert clearance < 0.0 or impacts > 5
+        found, struck = speeds(system, base, times, round(steps * 1000.0 * float(times[1])))
+        assert clearance < 0.0 or struck > 5
         worst.append(np.abs(found - known).max() / np.abs(known).max())
     stated = 2e-2 if law == "linear" else 5e-3
     assert worst[0] < stated and worst[1] < max(worst[0] / 3.0, 1e-6), worst
@@ -97,7 +100,6 @@ def test_a_collision_has_the_restitution_that_was_asked_for(law, e):
     v1, v2 = done.velocity / masses
     assert (v2 - v1) / speed == pytest.approx(e, rel=1e-3)
     assert 1.5 * v1 + 0.7 * v2 == pytest.approx(1.5 * speed, rel=1e-9)
-    assert done.impacts[0] == 1 and done.restitution[0] == pytest.approx(e, rel=2e-2)
 
 
 @pytest.mark.parametrize(("part", "opens"), [(0.93, True), (1.07, False)])
@@ -130,7 +132,6 @@ def test_a_cubic_spring_changes_the_frequency_as_asked(change):
     own = Halves(f1=f, f2=f, zeta1=0.0, zeta2=0.0)
     root, w2 = math.sqrt(own.bonded_beam().mass), (TURN * f) ** 2
     cubic = cubic_stiffness(change, f, amplitude)
-    assert frequency_change(cubic, f, amplitude) == pytest.approx(change)
     start = np.array([amplitude * root])
     moved = integrate(own.bonded(cubic=cubic), np.zeros(20_001), step, start)
     signs = np.flatnonzero(np.diff(np.signbit(moved.acceleration[0])))
@@ -139,7 +140,6 @@ def test_a_cubic_spring_changes_the_frequency_as_asked(change):
     exact = 4.0 * float(ellipk(0.5 * part / (w2 + part))) / math.sqrt(w2 + part)
     assert period == pytest.approx(exact, rel=1e-3)
     assert 1.0 / (f * period) - 1.0 == pytest.approx(change, rel=0.06)
-    assert moved.spring_peaks[0] == pytest.approx(amplitude)
     rubs = integrate(own.bonded(friction=0.4), np.zeros(2 * 8889 + 1), step, start)  # four periods
     expected = amplitude - 4 * 4.0 * 0.4 / w2
     assert abs(rubs.position[0] / root) == pytest.approx(expected, rel=5e-3)

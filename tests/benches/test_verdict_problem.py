@@ -2,14 +2,14 @@
 
 import dataclasses
 
+from .lumped import Halves
 from .recipe import Setup, Truth
 from .verdicts import DELAMINATED, FAILED, NO_OPENING, REFUSED, verdict_problem
 
 
 def test_what_is_wrong():
     """Sound or shut and called delaminated; open and overlooked, if it could be seen; no answer."""
-    numbers = {"f1": 45.0, "f2": 45.0, "zeta1": 0.01, "zeta2": 0.01}
-    beam = {**numbers, "setup": Setup(4.0, 0.02, 1, "up")}
+    beam = {"halves": Halves(), "setup": Setup(4.0, 0.02, 1, "up")}
     sound = Truth(kind="sound", is_delaminated=False, opened=False, touched=False, **beam)
     split = dataclasses.replace(
         sound, is_delaminated=True, opened=True, touched=True, seen_gap=1e-3

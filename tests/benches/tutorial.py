@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -31,7 +30,7 @@ FACE = Sensor(noise=0.02, gain=1.02)
 BENCH = Bench(excitation=SWEEP, box=Sensor(noise=0.01), face1=FACE, rate=RATE)
 HEADING = """\
 Virtual bench with compliant contact: computed, not measured
-Test;Swept sine {first:g}-{last:g} Hz, linear, {duration:g} s, {level} g
+Test;Swept sine {first:g}-{last:g} Hz, linear, {duration:g} s, {g} g
 Beam;{name}
 Sampling rate [Hz];{rate:g}
 Channel 1;Base, on the shaker's table
@@ -48,28 +47,16 @@ LASER_BENCH = Bench(
 )
 
 
-@dataclass(frozen=True)
-class Beam:
-    """A beam of the tutorial: its name, a maker of its system, and a seed of the noise."""
-
-    name: str
-    system: Callable[[], ModalSystem]
-    seed: int
-
-
-BEAMS: Mapping[str, Beam] = {
-    "beam_a": Beam("A", lambda: BEAM.delaminated(FACES), 71),
-    "beam_b": Beam("B", BEAM.bonded, 72),
-    "beam_c": Beam("C", lambda: in_rattling_clamp(BEAM.bonded(), BEAM.m1 + BEAM.m2, CLAMP), 73),
+BEAMS: dict[str, tuple[str, Callable[[], ModalSystem], int]] = {  # name, system, seed of noise
+    "beam_a": ("A", lambda: BEAM.delaminated(FACES), 71),
+    "beam_b": ("B", BEAM.bonded, 72),
+    "beam_c": ("C", lambda: in_rattling_clamp(BEAM.bonded(), BEAM.m1 + BEAM.m2, CLAMP), 73),
 }
 
 
 def format_record(record: xr.Dataset, name: str) -> str:
     """Return a record as CSV text: headings, semicolons, decimal commas, in g."""
-    head = HEADING.format(
-        **{"first": SWEEP.first, "last": SWEEP.last, "duration": SWEEP.duration},
-        **{"level": LEVEL, "name": name, "rate": RATE},
-    )
+    head = HEADING.format(**vars(SWEEP), g=LEVEL, name=name, rate=RATE)
     base, face = (record[c].values / GRAVITY for c in ("box_acceleration", "acceleration1"))
     table = np.stack([record.time.values, base, face], axis=1)
     rows = "".join(f"{t:.4f};{b:.4f};{a:.3f}\n" for t, b, a in table.tolist())
@@ -90,13 +77,13 @@ def format_laser_record(record: xr.Dataset) -> str:
 def write_records(folder: Path = FOLDER, bench: Bench = BENCH) -> list[Path]:
     """Shake the beams and write their records; return the paths."""
     folder.mkdir(parents=True, exist_ok=True)
-    paths = []
-    for stem, beam in BEAMS.items():
-        record, _ = bench.measure(beam.system(), beam.seed)
-        paths.append(folder / f"{stem}.csv")
-        paths[-1].write_text(format_record(record, beam.name), encoding="utf-8", newline="\n")
+    records = {
+        folder / f"{stem}.csv": format_record(bench.measure(system(), seed)[0], name)
+        for stem, (name, system, seed) in BEAMS.items()
+    }
     system = LASER_BEAM.system(Faces(), 0.008, modes=12, sensor=LASER_BEAM.length)
-    record, _ = LASER_BENCH.measure(system, 74)
-    paths.append(folder / "beam_d.csv")
-    paths[-1].write_text(format_laser_record(record), encoding="utf-8", newline="\n")
-    return paths
+    laser = format_laser_record(LASER_BENCH.measure(system, 74)[0])
+    records[folder / "beam_d.csv"] = laser
+    for path, text in records.items():
+        path.write_text(text, encoding="utf-8", newline="\n")
+    return list(records)
