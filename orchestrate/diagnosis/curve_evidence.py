@@ -95,8 +95,40 @@ class CurveData:
         cycles = -math.log(0.01) / (2.0 * math.pi * self.damping)  # 1 % of a step is left
         return round(min(max(cycles, SETTLE_CYCLES[0]), SETTLE_CYCLES[1]))
 
-    def evidence(self) -> CurveEvidence:
-        return build_curve_evidence(self, self.settle_cycles, SAMPLES_PER_PERIOD)
+    def evidence(
+        self, settle_cycles: int | None = None, samples: float = SAMPLES_PER_PERIOD
+    ) -> CurveEvidence:
+        """Return the curve's orders, and the stepped sine that measured it."""
+        ordered = sorted(zip(self.frequency, self.level, strict=True))
+        frequencies = (self.frequency[0], *self.frequency)  # twice as long at the first
+        # 10 cycles separate orders 0.5, 1, 1.37
+        cycles = {"settle_cycles": settle_cycles or self.settle_cycles, "measured_cycles": 10}
+        sine = SteppedSine(frequencies=frequencies, acceleration=tuple(ordered), **cycles)
+        rate = samples * max(self.frequency)  # so many in a period
+        time = np.arange(math.ceil(sine.duration * rate) + 2) / rate
+        box = np.asarray(sine(time))
+        # a curve has no samples of the faces
+        values = np.stack([box, *np.full((len(self.sensors), len(time)), np.nan)])
+        channels = Channels(time, rate, (BOX, *self.sensors), values, "resonance curve")
+        played = list(dwell_windows(channels, sine, sine.phase(time)))
+        windows = assemble_windows(channels, played[1:])
+        amplitude = np.array(self.amplitude, dtype=float)
+        phase = np.array(self.phase, dtype=float)
+        measured = amplitude.astype(complex)
+        measured[:, 0] *= np.exp(1j * np.nan_to_num(phase))
+        level = np.array(self.level)
+        every = np.full((1 + len(measured), len(ORDERS), len(level)), np.nan, dtype=complex)
+        every[1:, : len(CURVE_ORDERS)] = measured
+        every[0] = 0.0
+        every[0, 0] = level
+        floor = np.array(self.floor, dtype=float)
+        # where none is given: what a shaker makes of order 2
+        floor = np.where(np.isfinite(floor), floor, 0.01 * amplitude[:, 0])
+        floors = np.concatenate([np.zeros((1, len(level))), floor])
+        orders = RecordOrders(windows, channels, every, floors, np.quantile(floors, 0.2, axis=1))
+        pieces = Sampled(acceleration=tuple(box), sample_rate=rate).pieces()
+        rest = self.participation, self.settings, np.isfinite(phase), self.relative
+        return CurveEvidence(orders, pieces, *rest)
 
     def coarse_evidence(self) -> CurveEvidence:
         """Return the evidence of some points near the resonance, for a coarse search."""
@@ -107,13 +139,14 @@ class CurveData:
         some = self.select_points(near[:: math.ceil(len(near) / COARSE_POINTS)])
         chosen = some if len(some.frequency) >= FEWEST_POINTS else self
         settle = max(SETTLE_CYCLES[0], self.settle_cycles // 2)
-        return build_curve_evidence(chosen, settle, COARSE_SAMPLES)
+        return chosen.evidence(settle, COARSE_SAMPLES)
 
     def select_points(self, points: NDArray[np.intp]) -> CurveData:
         """Return the curve with only the points of these indices."""
         names = ("frequency", "level", "amplitude", "phase", "floor")
-        every = ((name, np.array(getattr(self, name), dtype=float)) for name in names)
-        return replace(self, **{name: none_for_nan(one[..., points]) for name, one in every})
+        every = {name: np.array(getattr(self, name), dtype=float) for name in names}
+        some: dict[str, Any] = {name: none_for_nan(one[..., points]) for name, one in every.items()}
+        return replace(self, **some)
 
 
 def check_curve(curve: xr.Dataset) -> None:
@@ -150,40 +183,6 @@ def half_power_damping(curve: xr.Dataset) -> float:
     low = frequency[max(below[below < top], default=0)]
     high = frequency[min(below[below > top], default=len(frequency) - 1)]
     return float((high - low) / (2.0 * frequency[top]))
-
-
-def build_curve_evidence(data: CurveData, settle_cycles: int, samples: float) -> CurveEvidence:
-    """Build the evidence of a curve: its orders, and the stepped sine that measured it."""
-    ordered = sorted(zip(data.frequency, data.level, strict=True))
-    frequencies = (data.frequency[0], *data.frequency)  # twice as long at the first
-    # 10 cycles separate orders 0.5, 1, 1.37
-    cycles = {"settle_cycles": settle_cycles, "measured_cycles": 10}
-    sine = SteppedSine(frequencies=frequencies, acceleration=tuple(ordered), **cycles)
-    rate = samples * max(data.frequency)  # so many in a period
-    time = np.arange(math.ceil(sine.duration * rate) + 2) / rate
-    box = np.asarray(sine(time))
-    # a curve has no samples of the faces
-    values = np.stack([box, *np.full((len(data.sensors), len(time)), np.nan)])
-    channels = Channels(time, rate, (BOX, *data.sensors), values, "resonance curve")
-    played = list(dwell_windows(channels, sine, sine.phase(time)))
-    windows = assemble_windows(channels, played[1:])
-    amplitude = np.array(data.amplitude, dtype=float)
-    phase = np.array(data.phase, dtype=float)
-    measured = amplitude.astype(complex)
-    measured[:, 0] *= np.exp(1j * np.nan_to_num(phase))
-    level = np.array(data.level)
-    every = np.full((1 + len(measured), len(ORDERS), len(level)), np.nan, dtype=complex)
-    every[1:, : len(CURVE_ORDERS)] = measured
-    every[0] = 0.0
-    every[0, 0] = level
-    floor = np.array(data.floor, dtype=float)
-    # where none is given: what a shaker makes of order 2
-    floor = np.where(np.isfinite(floor), floor, 0.01 * amplitude[:, 0])
-    floors = np.concatenate([np.zeros((1, len(level))), floor])
-    orders = RecordOrders(windows, channels, every, floors, np.quantile(floors, 0.2, axis=1))
-    pieces = Sampled(acceleration=tuple(box), sample_rate=rate).pieces()
-    rest = data.participation, data.settings, np.isfinite(phase), data.relative
-    return CurveEvidence(orders, pieces, *rest)
 
 
 @dataclass(frozen=True)

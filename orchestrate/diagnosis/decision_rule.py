@@ -152,20 +152,22 @@ class Beam:
         - "undecided": all else. :meth:`reason` says what strikes, :meth:`next_measurement` how to
           tell a stop from a softer face.
         """
-        usable = self.usable
-        words = {self.strike_words[one] for one in usable}
-        if FACES in words:
+        if FACES in self.words:
             return UNDECIDED if self.contradicting else DELAMINATED
-        if usable and all(not one.violated_conditions() for one in usable):
+        if self.usable and not any(one.violated_conditions() for one in self.usable):
             return NOT_SEEN
-        is_other = words & {"base strikes", "not locked", "kinks"}
+        is_other = self.words & {"base strikes", "not locked", "kinks"}
         return NOT_DESCRIBED if is_other and not self.may_be_a_stop else UNDECIDED
 
     @property
     def may_be_a_stop(self) -> bool:
         """Whether something strikes that is a stop or a softer face, and no faces do."""
-        words = {self.strike_words[one] for one in self.usable}
-        return FACES not in words and bool(words & {STOP, SOFTER})
+        return FACES not in self.words and bool(self.words & {STOP, SOFTER})
+
+    @cached_property
+    def words(self) -> set[str]:
+        """What strikes in the usable records."""
+        return {self.strike_words[one] for one in self.usable}
 
     @cached_property
     def usable(self) -> list[Findings]:
@@ -177,11 +179,11 @@ class Beam:
     def strike_words(self) -> dict[Findings, str]:
         """What strikes in each record, with what all records say of the stiffness."""
         known = {"stiffness": 1.0} if self.has_two_levels else {}
-        every = ((one, one.strikes) for one in self.records)
-        return {
-            one: (replace(own, **known) if math.isnan(own.stiffness) else own).what_strikes()
-            for one, own in every
-        }
+        words = {}
+        for one in self.records:
+            changes = known if math.isnan(one.strikes.stiffness) else {}
+            words[one] = replace(one.strikes, **changes).what_strikes()
+        return words
 
     @property
     def has_two_levels(self) -> bool:

@@ -217,7 +217,17 @@ def beam_job(
 ) -> DetectJob:
     """Return the job that decides on the records of a beam, and fits the one that hears most."""
     structure = None if guess is None else checked_delaminated_guess(guess)
-    every = checked_records_of_beam(record, structure, participation, settings)
+    is_list = isinstance(record, Sequence)
+    records: Sequence[xr.Dataset] = record if isinstance(record, Sequence) else [record]
+    if not records:
+        raise InputError("record: an empty list; expected one record or more of one beam")
+    every = []
+    for number, one in enumerate(records, 1):
+        try:
+            every.append(checked_record_data(one, structure, participation, settings))
+        except InputError as error:
+            place = f"record {number} of {len(records)}: " if is_list else ""
+            raise InputError(f"{place}{error}") from None
     made = structure or assumed_halves(cached_orders(every[0]).resonance, settings)
     shown = [record_findings(one, made, structure is not None) for one in every]
     verdict = Beam(tuple(shown)).verdict()
@@ -225,32 +235,12 @@ def beam_job(
     return DetectJob(
         name=f"detect_{checked_structure(guess or made).label()}",
         data=every[fitted],
-        others=(every[:fitted], every[fitted + 1 :]),
+        others=(tuple(every[:fitted]), tuple(every[fitted + 1 :])),
         guess=made,
         free=free,
         is_guessed=guess is not None,
         is_delaminated=verdict == DELAMINATED,
     )
-
-
-def checked_records_of_beam(
-    record: xr.Dataset | Sequence[xr.Dataset],
-    guess: Structure | None,
-    participation: Participation,
-    settings: Settings,
-) -> tuple[RecordData, ...]:
-    """Check one record or several of one beam; a message names which of them is wrong."""
-    if isinstance(record, xr.Dataset) or not isinstance(record, Sequence):
-        return (checked_record_data(record, guess, participation, settings),)
-    if not record:
-        raise InputError("record: an empty list; expected one record or more of one beam")
-    found = []
-    for number, one in enumerate(record, 1):
-        try:
-            found.append(checked_record_data(one, guess, participation, settings))
-        except InputError as error:
-            raise InputError(f"record {number} of {len(record)}: {error}") from None
-    return tuple(found)
 
 
 @dataclass(frozen=True, kw_only=True)

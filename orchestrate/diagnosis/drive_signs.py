@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -24,23 +23,15 @@ def is_drive_run(data: object) -> bool:
     )
 
 
-class DriveSigns(NamedTuple):
-    """Signs of a run against that of the sound beam, relative, or their errors; NaN: unknown."""
-
-    jump_voltage_fall: float
-    extra_power: float
-
-
-def signs_and_errors(run: xr.Dataset, sound: xr.Dataset) -> tuple[DriveSigns, DriveSigns]:
-    """Compute the signs of a run against that of the sound beam, and their errors."""
+def drive_signs(run: xr.Dataset, sound: xr.Dataset) -> dict[str, tuple[float, float]]:
+    """Compute signs of a run against the sound beam's, relative, and their errors, NaN: unknown."""
     first, second = jump_voltage(run), jump_voltage(sound)
-    fall = 1.0 - first / second
     lag = sum(  # of the ramps; NaN where it is not known
         abs(float(one.jump_lag.sel(jump="up")) / voltage) if "jump_lag" in one else math.nan
         for one, voltage in ((run, first), (sound, second))
     )
-    power, scatter = extra_power_and_error(run, sound)
-    return DriveSigns(fall, power), DriveSigns(lag, scatter)
+    fall = 1.0 - first / second
+    return {"jump_voltage_fall": (fall, lag), "extra_power": extra_power_and_error(run, sound)}
 
 
 def jump_voltage(run: xr.Dataset) -> float:

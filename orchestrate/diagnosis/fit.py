@@ -148,7 +148,13 @@ def fit(
         delaminated=kind == DELAMINATED,
         kind=kind,
     )
-    check_tone_determines_fit(job)
+    evidence, fitted = job.evidence, job.hypotheses[-1].bounds(job.evidence)
+    numbers = len(FITTED_ORDERS) * len(evidence.sensor_masses)  # that one tone has
+    is_level = np.ptp(evidence.level) < 0.1 * evidence.level.max()
+    if evidence.windows.is_tone and is_level and len(fitted) >= numbers:
+        text = f"one tone of {evidence.frequency.mean():.4g} Hz has {numbers} numbers"
+        expected = "expected a sweep, or fewer in free="
+        raise InputError(f"record: {text}, {len(fitted)} are fitted; {expected}")
     return compute_dataset(job, running, make_fmu_finder(running))
 
 
@@ -187,17 +193,6 @@ def checked_record_data(
             text = f"record: the response is largest at {resonance:.3g} Hz, {text}: are the times"
             warnings.warn(f"{text} in s, and is the guess one of this beam?", stacklevel=3)
     return data
-
-
-def check_tone_determines_fit(job: FitJob) -> None:
-    """Check that fewer numbers are fitted than a record of one tone has: three orders a sensor."""
-    evidence, hypothesis = job.evidence, job.hypotheses[-1]
-    free, numbers = hypothesis.bounds(evidence), len(FITTED_ORDERS) * len(evidence.sensor_masses)
-    is_level = np.ptp(evidence.level) < 0.1 * evidence.level.max()
-    if evidence.windows.is_tone and is_level and len(free) >= numbers:
-        text = f"one tone of {evidence.frequency.mean():.4g} Hz has {numbers} numbers"
-        expected = "expected a sweep, or fewer in free="
-        raise InputError(f"record: {text}, {len(free)} are fitted; {expected}")
 
 
 def checked_delaminated_guess(guess: Structure) -> Structure:
@@ -363,37 +358,30 @@ class Results:
         by_window = np.sqrt(np.mean(self.residuals**2, axis=(1, 2)))
         over, windows = ("channel", "order", "window"), ("hypothesis", "window")
         minima, fitted = ("hypothesis", "minimum"), ("hypothesis", *over)
-        variables = {
-            "misfit": variable("hypothesis", self.misfit, "1", "misfit over what is expected"),
-            "evaluations": variable(
-                "hypothesis", self.evaluations, "1", "motions that were computed"
-            ),
-            "minima": variable(minima, self.minima, "1", "misfits of the minima that differ"),
-            "misfit_at": variable(windows, by_window, "1", "misfit in each window"),
-            "measured": variable(
-                over, np.abs(evidence.measured_orders), "m/s2", "amplitude of orders"
-            ),
-            "floor": variable(over, floor, "m/s2", "amplitude between the orders"),
-            "fitted": variable(fitted, np.abs(self.fitted), "m/s2", "amplitude of fitted orders"),
+        variables: dict[str, tuple[Any, ...]] = {
+            "misfit": ("hypothesis", self.misfit, "1", "misfit over what is expected"),
+            "evaluations": ("hypothesis", self.evaluations, "1", "motions that were computed"),
+            "minima": (minima, self.minima, "1", "misfits of the minima that differ"),
+            "misfit_at": (windows, by_window, "1", "misfit in each window"),
+            "measured": (over, np.abs(evidence.measured_orders), "m/s2", "amplitude of orders"),
+            "floor": (over, floor, "m/s2", "amplitude between the orders"),
+            "fitted": (fitted, np.abs(self.fitted), "m/s2", "amplitude of fitted orders"),
         }
         units, words = zip(*REPORTED.values(), strict=True)
         names = [one.name for one in self.job.hypotheses]
+        excited, over_excitation = "frequency of the excitation", "frequency over the excitation's"
         coordinates = {
             "hypothesis": text_coordinate("hypothesis", names, "hypothesis"),
             "parameter": text_coordinate("parameter", list(REPORTED), "parameter"),
             "unit": text_coordinate("parameter", units, "unit of the parameter"),
             "meaning": text_coordinate("parameter", words, "meaning of the parameter"),
             "channel": text_coordinate("channel", evidence.orders.sensors, "channel of the record"),
-            "order": variable(
-                "order", np.array(FITTED_ORDERS), "1", "frequency over the excitation's"
-            ),
+            "order": variable("order", np.array(FITTED_ORDERS), "1", over_excitation),
             "time": variable("window", evidence.windows.time, "s", "middle of the window"),
-            "frequency": variable(
-                "window", evidence.frequency, "Hz", "frequency of the excitation"
-            ),
+            "frequency": variable("window", evidence.frequency, "Hz", excited),
             "level": variable("window", evidence.level, "m/s2", "amplitude of the base"),
         }
-        return variables, coordinates
+        return {name: variable(*of) for name, of in variables.items()}, coordinates
 
 
 def reported_derivatives(

@@ -67,13 +67,14 @@ class Hypothesis(ABC):
 # -- sound ----------------------------------------------------------------------------------------
 
 
-class Sound(Hypothesis):
-    """A bonded structure: one mass, whose spring may be of several kinds.
+class Bonded(Hypothesis):
+    """A bonded structure: one mass, on a linear spring unless a derived class says otherwise.
 
     Numbers are ``f`` in Hz, ``log_zeta``, and those of ``extra``: of size 1 where what they stand
     for is as large as the linear spring's force at the largest displacement.
     """
 
+    name = "bonded"
     extra: ClassVar[dict[str, tuple[float, float]]] = {}
 
     def bounds(self, evidence: Evidence) -> dict[str, tuple[float, float]]:
@@ -99,16 +100,11 @@ class Sound(Hypothesis):
 
     def reported_parameters(self, values: Values, evidence: Evidence) -> dict[str, float]:
         mass = self.single_mass(values, evidence)
-        return {name: getattr(mass, name) for name in ("f", "zeta", *self.extra)}
+        names = ("f", "zeta", *self.extra)
+        return {name: getattr(mass, name, values.get(name, 0.0)) for name in names}
 
 
-class Bonded(Sound):
-    """A bonded structure on a linear spring."""
-
-    name = "bonded"
-
-
-class NonlinearSpring(Sound):
+class NonlinearSpring(Bonded):
     """A bonded structure on a spring that hardens or softens, symmetrically or not."""
 
     name = "bonded, hardening or softening"
@@ -130,7 +126,7 @@ class NonlinearSpring(Sound):
         return replace(linear, square=values["square"] / x, cube=values["cube"] / x**2)
 
 
-class DryFriction(Sound):
+class DryFriction(Bonded):
     """A bonded structure on a linear spring with dry friction."""
 
     name = "bonded, with dry friction"
@@ -149,7 +145,7 @@ class DryFriction(Sound):
         return replace(super().single_mass(values, evidence), friction=friction, slow=slow)
 
 
-class PositiveStop(Sound):
+class PositiveStop(Bonded):
     """A bonded structure with a stop in the positive direction of the sensor."""
 
     name = "bonded, with a stop in the positive direction"
@@ -179,7 +175,7 @@ class NegativeStop(PositiveStop):
     side = -1.0
 
 
-class TwoModes(Sound):
+class TwoModes(Bonded):
     """A linear structure with a second mode in the sweep, such as torsion."""
 
     name = "bonded, with two modes"
@@ -208,9 +204,6 @@ class TwoModes(Sound):
         both = np.concatenate([columns.real, columns.imag])
         parts = np.linalg.lstsq(both, np.concatenate([wanted.real, wanted.imag]), rcond=None)[0]
         return float(np.clip(parts[1] / parts[0], -1.0, 1.0)) if parts[0] else 0.0
-
-    def reported_parameters(self, values: Values, evidence: Evidence) -> dict[str, float]:
-        return {"f": values["f"], "zeta": math.exp(values["log_zeta"]), "apart": values["apart"]}
 
 
 # -- delaminated ----------------------------------------------------------------------------------

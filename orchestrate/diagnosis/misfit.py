@@ -23,11 +23,6 @@ def soft_l1_loss(residuals: Floats) -> Floats:
     return np.asarray(2.0 * SOFT_LIMIT**2 * (np.sqrt(1.0 + (residuals / SOFT_LIMIT) ** 2) - 1.0))
 
 
-def soft_l1_weights(residuals: Floats) -> Floats:
-    """Return the derivative of the soft l1 loss over that of the plain squares."""
-    return np.asarray(1.0 / np.sqrt(1.0 + (residuals / SOFT_LIMIT) ** 2))
-
-
 def misfit(residuals: Floats) -> float:
     """Return the square root of the mean soft l1 loss of the residuals."""
     return math.sqrt(float(np.mean(soft_l1_loss(residuals))))
@@ -80,7 +75,7 @@ class LinearModel:
     @property
     def weighted_slopes(self) -> Floats:
         """Slopes times the weights of the soft loss, one row a residual."""
-        weights = soft_l1_weights(self.residuals)
+        weights = 1.0 / np.sqrt(1.0 + (self.residuals / SOFT_LIMIT) ** 2)  # loss over plain squares
         return (self.slopes * weights[..., np.newaxis]).reshape(-1, self.slopes.shape[-1])
 
     @property

@@ -241,6 +241,7 @@ class PlanJob(Job):
         force = float(largest_unit_opening_force(self.structure, ends).max())
         text, rate = "rehearsed verdict on the", dict(self.sensors)[BOX].rate
         heard, over = table["heard"], "how far strikes rise over noise, of the"
+        shut, opens = "preload above which the faces stay shut", "level from which the faces open"
         return xr.Dataset(
             {
                 "verdict": ("level", list(guess_words), {"long_name": f"{text} guess"}),
@@ -250,13 +251,9 @@ class PlanJob(Job):
                 "sound_heard": variable("level", heard[:, 1], "1", f"{over} sound twin"),
                 "threshold": variable((), TIMING.heard, "1", "from here something strikes"),
                 "opening": variable("level", table["opening"][:, 0], "m", "largest gap"),
-                "closing_force": variable(
-                    "level", levels * force, "N", "preload above which the faces stay shut"
-                ),
+                "closing_force": variable("level", levels * force, "N", shut),
                 "overload": yes_or_no("level", cut, "whether readings reach the sensor's range"),
-                "opening_level": variable(
-                    (), self.structure.preload / force, "m/s2", "level from which the faces open"
-                ),
+                "opening_level": variable((), self.structure.preload / force, "m/s2", opens),
                 "recommended_level": variable((), level, "m/s2", "level to test at"),
                 "second_level": variable((), second, "m/s2", "second level to test at"),
                 "recommended_first": variable((), self.first, "Hz", "frequency to begin at"),

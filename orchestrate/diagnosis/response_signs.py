@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -25,6 +25,9 @@ MAX_EDGE = 0.4  # highest beginning of the high band that may be given, over the
 MIN_WINDOWS = 4  # windows of a curve
 
 
+ValueAndFloor = tuple[Floats, Floats]  # of a sign, and by noise
+
+
 @dataclass(frozen=True)
 class Curve:
     """Hold the response over the base's motion along a frequency that only rises or falls."""
@@ -40,9 +43,8 @@ class Curve:
 class ResponseSigns:
     """Hold the signs of the responses of a record."""
 
-    # by the sign's name, of shape (rows,); frequencies in Hz, where a sign is largest
-    values: dict[str, Floats]
-    floors: dict[str, Floats]
+    # by the sign's name, of shape (rows,): value and floor; frequency in Hz, where it is largest
+    signs: dict[str, ValueAndFloor]
     frequencies: dict[str, Floats]
     curves: list[Curve]
     noise: Floats  # root mean square of the noise, m/s2
@@ -54,18 +56,12 @@ def response_signs(
 ) -> ResponseSigns:
     """Compute the signs that one record has by itself, without comparison."""
     own = signs_of_orders(channels, periods) if swept else curve_and_noise_by_spectra(channels)
-    edge = default_high_band_edge(channels, own.highest) if high_band is None else high_band
-    moments = moment_signs_and_floors(channels, edge)
-    loss, loss_floor = coherence_loss_and_floor(channels, own.noise)
-    values = {**own.values, **moments[0], "coherence_loss": loss}
-    floors = {**own.floors, **moments[1], "coherence_loss": loss_floor}
-    return replace(own, values=values, floors=floors)
-
-
-def default_high_band_edge(channels: Channels, highest: float) -> float:
-    """Return where the high band begins, Hz; NaN if the sampling rate does not reach it."""
-    edge = min(6.0 * highest, 0.3 * channels.sample_rate)
-    return edge if edge >= 3.3 * highest else math.nan
+    edge = high_band
+    if edge is None:  # NaN if the sampling rate does not reach it
+        edge = min(6.0 * own.highest, 0.3 * channels.sample_rate)
+        edge = edge if edge >= 3.3 * own.highest else math.nan
+    more = {**moment_signs(channels, edge), "coherence_loss": coherence_loss(channels, own.noise)}
+    return replace(own, signs={**own.signs, **more})
 
 
 def has_trackable_sine(channels: Channels, periods: float) -> bool:
@@ -89,17 +85,21 @@ def signs_of_orders(channels: Channels, periods: float) -> ResponseSigns:
     power = {order: np.abs(rows[:, ORDERS.index(order)]) ** 2 for order in ORDERS}
     sums = {order: nan_mean(power[order]) for order in ORDERS}
     off = np.fmin(*(sums[order] for order in OFF_ORDERS))
-    values = {name: np.sqrt(sums[order] / sums[1.0]) for name, order in OF_ORDERS.items()}
-    floors = {name: np.sqrt(off / sums[1.0]) for name in OF_ORDERS}
+    noise = np.sqrt(off / sums[1.0])
+    signs = {name: (np.sqrt(sums[order] / sums[1.0]), noise) for name, order in OF_ORDERS.items()}
     peaks = {name: frequency[nan_argmax(power[order])] for name, order in OF_ORDERS.items()}
     total = np.nansum([power[order] for order in HARMONICS], axis=0)
-    values["distortion"] = np.sqrt(nan_mean(total) / sums[1.0])
-    floors["distortion"] = np.sqrt(len(HARMONICS) * off / sums[1.0])
+    floor = np.sqrt(len(HARMONICS) * off / sums[1.0])
+    signs["distortion"] = np.sqrt(nan_mean(total) / sums[1.0]), floor
     peaks["distortion"] = frequency[nan_argmax(total)]
-    noise = noise_from_off_orders(windows, [power[order] for order in OFF_ORDERS])
     first = ORDERS.index(1.0)
-    curves = curves_by_direction(windows, box[first], rows[:, first], floors["order_2"])
-    return ResponseSigns(values, floors, peaks, curves, noise, float(frequency.max()))
+    curves = curves_by_direction(windows, box[first], rows[:, first], noise)
+    # white noise: Hann's weights over n samples leave 6 ln(2) s^2/n in the median of an off-order,
+    # which impacts hardly raise
+    samples = np.array([window.part.stop - window.part.start for window in windows])
+    medians = [median_of_finite_columns(power[order] * samples) for order in OFF_ORDERS]
+    rms = np.asarray(np.sqrt(np.fmin.reduce(medians) / (6.0 * math.log(2.0))))
+    return ResponseSigns(signs, peaks, curves, rms, float(frequency.max()))
 
 
 def nan_mean(power: Floats) -> Floats:
@@ -113,14 +113,6 @@ def nan_argmax(power: Floats) -> NDArray[np.intp]:
     return np.asarray(np.nan_to_num(power, nan=-1.0).argmax(axis=-1))
 
 
-def noise_from_off_orders(windows: Sequence[Window], powers: Sequence[Floats]) -> Floats:
-    """Estimate the root mean square of white noise from the off-orders, m/s2."""
-    # Hann's weights over n samples leave 6 ln(2) s^2/n in the median, which impacts hardly raise
-    samples = np.array([window.part.stop - window.part.start for window in windows])
-    medians = [median_of_finite_columns(power * samples) for power in powers]
-    return np.asarray(np.sqrt(np.fmin.reduce(medians) / (6.0 * math.log(2.0))))
-
-
 def median_of_finite_columns(values: Floats) -> Floats:
     """Return the median of each row over the columns without NaN; NaN where there are none."""
     known = values[:, np.isfinite(values).all(axis=0)]
@@ -131,8 +123,12 @@ def curves_by_direction(
     windows: Sequence[Window], box: Floats, rows: Floats, floor: Floats
 ) -> list[Curve]:
     """Split the response of order 1 into one curve upwards and one downwards."""
+    from scipy.ndimage import median_filter
+
     frequency = np.array([window.frequency for window in windows])
-    rate = smooth_rate(np.array([window.rate for window in windows]))
+    rate = np.array([window.rate for window in windows])
+    # smooth: noise on the box moves single windows
+    rate = median_filter(rate, size=min(15, len(rate)), mode="nearest")
     curves = []
     for direction in (1, -1):
         chosen = np.flatnonzero(rate * direction > 0.0)
@@ -142,13 +138,6 @@ def curves_by_direction(
             response = rows[:, chosen] / box[chosen]
             curves.append(Curve(direction, level, frequency[chosen], response, floor))
     return curves
-
-
-def smooth_rate(rate: Floats) -> Floats:
-    """Smooth the sweep's rate by a running median: noise on the box moves single windows."""
-    from scipy.ndimage import median_filter
-
-    return np.asarray(median_filter(rate, size=min(15, len(rate)), mode="nearest"))
 
 
 # -- any excitation -------------------------------------------------------------------------------
@@ -167,7 +156,7 @@ def curve_and_noise_by_spectra(channels: Channels) -> ResponseSigns:
     noise = np.sqrt(0.5 * channels.sample_rate * density)
     curves = [curve] if excited.sum() >= MIN_WINDOWS else []
     highest = float(frequency[excited].max()) if excited.any() else math.nan
-    return ResponseSigns({}, {}, {}, curves, noise, highest)
+    return ResponseSigns({}, {}, curves, noise, highest)
 
 
 def welch_segments(channels: Channels) -> WelchSegments:
@@ -179,7 +168,7 @@ def excited_lines(frequency: Floats, box: Floats) -> NDArray[np.bool_]:
     return np.asarray((box >= EXCITED * box.max()) & (frequency > 0.0))
 
 
-def coherence_loss_and_floor(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
+def coherence_loss(channels: Channels, noise: Floats) -> ValueAndFloor:
     """Return the mean of 1 less the coherence over the excited lines, and that of noise."""
     try:
         segments = welch_segments(channels)
@@ -197,35 +186,30 @@ def coherence_loss_and_floor(channels: Channels, noise: Floats) -> tuple[Floats,
     return 1.0 - coherence.mean(axis=-1), np.minimum(floor, 1.0)
 
 
-def moment_signs_and_floors(
-    channels: Channels, edge: float
-) -> tuple[dict[str, Floats], dict[str, Floats]]:
+def moment_signs(channels: Channels, edge: float) -> dict[str, ValueAndFloor]:
     """Compute kurtosis and skewness, of all and of the high band; and those of Gaussian noise."""
     from scipy.signal import butter, sosfiltfilt
     from scipy.stats import kurtosis, skew
 
-    rows, count = channels.values[1:], len(channels.time)
-    bands = {"": rows}
-    if 0.0 < edge <= MAX_EDGE * channels.sample_rate:
-        sections = butter(4, edge, "highpass", fs=channels.sample_rate, output="sos")
-        bands["_high"] = sosfiltfilt(sections, rows)
-    values: dict[str, Floats] = {}
-    for ending in ("", "_high"):
-        band = bands.get(ending)
-        moves = band is not None and np.ptp(band, axis=-1).min() > 0.0
-        unknown = np.full(len(rows), np.nan)
-        values[f"kurtosis{ending}"] = kurtosis(band, axis=-1, fisher=False) if moves else unknown
-        values[f"skewness{ending}"] = np.abs(skew(band, axis=-1)) if moves else unknown
-    noise = {"kurtosis": 3.0, "skewness": 2.0 * math.sqrt(6.0 / count)}
-    floors = {name: np.full(len(rows), noise[name.partition("_")[0]]) for name in values}
-    return values, floors
+    rows, rate, signs = channels.values[1:], channels.sample_rate, {}
+    unknown, whole = np.full(len(rows), np.nan), np.ones(len(rows))
+    bands = {"": rows, "_high": rows[:, :0]}
+    if 0.0 < edge <= MAX_EDGE * rate:
+        bands["_high"] = sosfiltfilt(butter(4, edge, "highpass", fs=rate, output="sos"), rows)
+    for ending, band in bands.items():
+        moves = band.size > 0 and np.ptp(band, axis=-1).min() > 0.0
+        fourth = kurtosis(band, axis=-1, fisher=False) if moves else unknown
+        third = np.abs(skew(band, axis=-1)) if moves else unknown
+        signs[f"kurtosis{ending}"] = fourth, 3.0 * whole
+        signs[f"skewness{ending}"] = third, 2.0 * math.sqrt(6.0 / len(channels.time)) * whole
+    return signs
 
 
 # -- differences between responses ----------------------------------------------------------------
 
 
-def sensor_difference_and_floor(curves: Sequence[Curve], channels: int) -> tuple[Floats, Floats]:
-    """Compute the difference between two sensors, best complex gain taken out, and its floor."""
+def sensor_difference(curves: Sequence[Curve], channels: int) -> ValueAndFloor:
+    """Compute the difference between two sensors, best complex gain taken out."""
     rows = len(curves[0].response) if curves else 0
     if channels != 2 or not rows:
         unknown = np.full(rows, np.nan)
@@ -249,10 +233,8 @@ def relative_rms_difference(one: Curve, other: Curve) -> Floats:
     return np.asarray(np.linalg.norm(second - first, axis=-1) / np.linalg.norm(first, axis=-1))
 
 
-def level_and_direction_differences(
-    curves: Sequence[Curve], rows: int
-) -> Mapping[str, tuple[Floats, Floats]]:
-    """Compute the largest differences over level and over direction, and their noise floors."""
+def level_and_direction_differences(curves: Sequence[Curve], rows: int) -> dict[str, ValueAndFloor]:
+    """Compute the largest differences over level and over direction."""
     unknown, names = np.full(rows, np.nan), ("level_dependence", "direction_difference")
     best = dict.fromkeys(names, (unknown, unknown))
     for one, other in combinations(curves, 2):

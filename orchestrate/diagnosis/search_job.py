@@ -30,17 +30,29 @@ from .standard_errors import estimate_with_errors
 MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 7, 8  # rows and columns of tables
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RecordData:
-    """Hold the channels of a record as plain tuples, the form in which a job keeps them."""
+    """Hold the channels of a record, in the form in which a job keeps and compares them."""
 
     names: tuple[str, ...]
     # hz, s
     sample_rate: float
     begin: float
-    channels: tuple[tuple[float, ...], ...]  # m/s2
+    channels: Floats  # m/s2, shape (channels, samples)
     participation: tuple[float | None, ...] = ()  # of each sensor; None, or (): to be fitted
     settings: Settings = SETTINGS
+
+    def __eq__(self, other: object) -> bool:
+        """Whether another one has the same samples and settings, as the copy in a worker has."""
+        return self is other or (
+            isinstance(other, RecordData)
+            and {**vars(self), "channels": 0} == {**vars(other), "channels": 0}
+            and np.array_equal(self.channels, other.channels)
+        )
+
+    def __hash__(self) -> int:
+        """Hash without the samples, which are many."""
+        return hash((self.names, self.sample_rate, self.begin, self.channels.shape))
 
     @classmethod
     def from_channels(
@@ -50,8 +62,7 @@ class RecordData:
         settings: Settings = SETTINGS,
     ) -> RecordData:
         """Copy the samples of checked channels."""
-        values = tuple(tuple(row.tolist()) for row in channels.values)
-        begin = float(channels.time[0])
+        begin, values = float(channels.time[0]), np.array(channels.values, order="C")
         return cls(channels.names, channels.sample_rate, begin, values, participation, settings)
 
     def evidence(self, samples_per_period: float = SAMPLES_PER_PERIOD) -> Evidence:
@@ -73,8 +84,8 @@ def cached_evidence(data: RecordData | CurveData) -> Evidence:
 @lru_cache(maxsize=2)
 def cached_channels(data: RecordData) -> Channels:
     """Return the channels of a record as arrays, made once per process."""
-    time = data.begin + np.arange(len(data.channels[0])) / data.sample_rate
-    return Channels(time, data.sample_rate, data.names, np.array(data.channels), "record")
+    time = data.begin + np.arange(data.channels.shape[1]) / data.sample_rate
+    return Channels(time, data.sample_rate, data.names, data.channels, "record")
 
 
 @lru_cache(maxsize=2)

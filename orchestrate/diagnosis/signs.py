@@ -19,7 +19,7 @@ from ..model.arguments import checked_integer
 from ..model.ranges import checked_range
 from ..response.labels import flags, variable
 from ..running.job import refuse_unsupported_structure
-from .drive_signs import is_drive_run, signs_and_errors
+from .drive_signs import drive_signs, is_drive_run
 from .indicators import INDICATORS
 from .order_windows import checked_sensor_channels
 from .response_signs import (
@@ -28,7 +28,7 @@ from .response_signs import (
     has_trackable_sine,
     level_and_direction_differences,
     response_signs,
-    sensor_difference_and_floor,
+    sensor_difference,
 )
 from .undamaged import SoundStructure
 
@@ -130,16 +130,15 @@ def signs(
     pairs = zip(every, swept, strict=True)
     own = [response_signs(channels, sine, length, edge) for channels, sine in pairs]
     noises = [one.noise if level is None else np.full(len(names), level) for one in own]
-    values, floors = all_signs_and_floors(own, len(names))
-    shown = np.full((count, len(values), len(names)), np.nan)
-    sound = UNKNOWN
+    value, floor = all_signs(own, len(names))
+    shown, sound = np.full((count, *value.shape), np.nan), UNKNOWN
     if reference != RESPONSE:
         sound = choose_sound_structure(structure, own[0], every[0])
         made = [
             response_signs(sound.simulate_channels(channels, rms, range(count)), sine, length, edge)
             for channels, rms, sine in zip(every, noises, swept, strict=True)
         ]
-        rows = np.stack(list(all_signs_and_floors(made, len(names))[0].values()))
+        rows = all_signs(made, len(names))[0]
         shown = rows.reshape(len(rows), count, len(names)).transpose(1, 0, 2)
     described = {
         "seeds": f"0 to {count - 1}",
@@ -149,9 +148,14 @@ def signs(
     }
     if reference == RESPONSE:
         described["sound_from"] = "none: what excites the structure is unknown"
-    answer = signs_dataset(every[0].title, names, values, floors, shown, times, described)
-    return answer.assign(
-        frequency=peak_frequency_variable(own[0], names), **sound_variables(sound, noises[0])
+    unknown = np.full(len(names), np.nan)
+    peaks = np.stack([own[0].frequencies.get(name, unknown) for name in INDICATORS])
+    text = "frequency of the excitation where it is largest"
+    return signs_dataset(every[0].title, names, value, floor, shown, times, described).assign(
+        frequency=variable(("sign", "channel"), peaks, "Hz", text),
+        noise=variable("channel", noises[0], "m/s2", "root mean square of the noise"),
+        sound_f=variable((), sound.f, "Hz", "natural frequency of the sound structure"),
+        sound_zeta=variable((), sound.zeta, "1", "damping ratio of the sound structure"),
     )
 
 
@@ -196,23 +200,17 @@ def choose_sound_structure(
     return SoundStructure.fit_to_record(curve.frequency, curve.response, channels, force)
 
 
-def all_signs_and_floors(
-    own: Sequence[ResponseSigns], channels: int
-) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Return values and noise floors of all signs, including those that compare records."""
-    first = own[0]
-    rows = len(first.noise)
-    values, floors = dict(first.values), dict(first.floors)
-    curves = [curve for one in own for curve in one.curves]
-    compared = level_and_direction_differences(curves, rows)
-    for name, (value, floor) in compared.items():
-        values[name], floors[name] = value, floor
-    unknown = np.full(rows, np.nan)
+def all_signs(own: Sequence[ResponseSigns], channels: int) -> Floats:
+    """Return value and noise floor of all signs, also those that compare records.
+
+    Shape (2, signs, rows); NaN where a sign is not known.
+    """
+    first, curves = own[0], [curve for one in own for curve in one.curves]
+    every = {**first.signs, **level_and_direction_differences(curves, len(first.noise))}
     if first.curves:
-        value, floor = sensor_difference_and_floor(first.curves, channels)
-        values["sensor_difference"], floors["sensor_difference"] = value, floor
-    every = {name: values.get(name, unknown) for name in INDICATORS}
-    return every, {name: floors.get(name, unknown) for name in INDICATORS}
+        every["sensor_difference"] = sensor_difference(first.curves, channels)
+    unknown = (np.full(len(first.noise), np.nan),) * 2
+    return np.array([every.get(name, unknown) for name in INDICATORS]).swapaxes(0, 1)
 
 
 # -- results --------------------------------------------------------------------------------------
@@ -221,14 +219,15 @@ def all_signs_and_floors(
 def signs_dataset(
     title: str,
     names: Sequence[str],
-    values: dict[str, Floats],
-    floors: dict[str, Floats],
+    value: Floats,
+    floor: Floats,
     shown: Floats,
     factor: float,
     described: dict[str, Any],
 ) -> xr.Dataset:
     over = ("sign", "channel")
-    value, floor = np.stack(list(values.values())), np.stack(list(floors.values()))
+    is_complete = np.isfinite(shown).all(axis=0)  # for all seeds
+    median = np.where(is_complete, np.median(np.nan_to_num(shown), axis=0), np.nan)
     highest = np.fmax.reduce(shown)
     limit = factor * np.fmax(floor, highest)
     known = np.isfinite(value) & np.isfinite(highest)
@@ -244,7 +243,7 @@ def signs_dataset(
         {
             "value": variable(over, value, "1", "sign of the record"),
             "floor": variable(over, floor, "1", "its value by noise"),
-            "sound": variable(over, median_over_seeds(shown), "1", "of a sound structure, median"),
+            "sound": variable(over, median, "1", "of a sound structure, median"),
             "sound_highest": variable(over, highest, "1", "of a sound structure, largest"),
             "exceeds": flags(over, exceeds, f"whether it is above {factor:g} times all", MEANINGS),
         },
@@ -257,37 +256,13 @@ def signs_dataset(
     )
 
 
-def median_over_seeds(shown: Floats) -> Floats:
-    """Return the median over the seeds; NaN where one of them has no value."""
-    known = np.isfinite(shown).all(axis=0)
-    return np.asarray(np.where(known, np.median(np.nan_to_num(shown), axis=0), np.nan))
-
-
-def peak_frequency_variable(own: ResponseSigns, names: Sequence[str]) -> Any:
-    """Return the frequencies at which the orders are largest, Hz, as a variable."""
-    unknown = np.full(len(names), np.nan)
-    rows = np.stack([own.frequencies.get(name, unknown) for name in INDICATORS])
-    text = "frequency of the excitation where it is largest"
-    return variable(("sign", "channel"), rows, "Hz", text)
-
-
-def sound_variables(sound: SoundStructure, noise: Floats) -> dict[str, Any]:
-    return {
-        "noise": variable("channel", noise, "m/s2", "root mean square of the noise"),
-        "sound_f": variable((), sound.f, "Hz", "natural frequency of the sound structure"),
-        "sound_zeta": variable((), sound.zeta, "1", "damping ratio of the sound structure"),
-    }
-
-
 def signs_of_drive_run(run: xr.Dataset, others: Sequence[xr.Dataset], factor: float) -> xr.Dataset:
     """Compute the signs of a run on a weak drive, against that of the sound beam."""
     if len(others) != 1 or not is_drive_run(others[0]):
         raise InputError("other: expected the run of the sound beam on the same drive")
-    values, floors = (
-        {name: np.array([getattr(signs, name, np.nan)]) for name in INDICATORS}
-        for signs in signs_and_errors(run, others[0])
-    )
-    shown = 0.0 * np.stack(list(floors.values()))[None]  # against itself; an unknown floor stays so
+    known, unknown = drive_signs(run, others[0]), (math.nan, math.nan)
+    value, floor = np.array([known.get(name, unknown) for name in INDICATORS]).T[..., np.newaxis]
+    shown = 0.0 * floor[np.newaxis]  # against itself; an unknown floor stays so
     title = str(run.attrs.get("title", "run"))
     described = {"seeds": "none", "sound_from": "the run of the sound beam"}
-    return signs_dataset(title, ["motor"], values, floors, shown, factor, described)
+    return signs_dataset(title, ["motor"], value, floor, shown, factor, described)

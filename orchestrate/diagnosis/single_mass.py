@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..constants import TURN
 from ..fmu.c_library import load_loop
 from ..laboratory.pieces import Floats
 
@@ -39,20 +40,16 @@ class SingleMass:
     position: float = 0.0  # p, m
     side: float = 1.0  # b
 
-    def coefficients(self) -> tuple[float, ...]:
-        """Return the coefficients of the equation in the order that the integrator takes."""
-        w = 2.0 * math.pi * self.f
-        smooth = (w * w, 2.0 * self.zeta * w, self.square, self.cube, self.friction, self.slow)
-        return (*smooth, self.stop, self.position, self.side)
-
     def displacements(self, cubics: Floats, step: float, bound: float = 1e3) -> Floats:
         """Return displacements, m, at the cubics' beginnings and the end; NaN beyond ``bound``."""
         if not (self.square or self.cube or self.friction or self.stop):
             return self.linear_displacements(cubics, step)
         stiffest = self.f * math.sqrt(1.0 + max(self.stop, 0.0))
-        parts = max(1, math.ceil(2.0 * math.pi * stiffest * step / MAX_STEP_ANGLE))
-        displacement = np.full(len(cubics) + 1, np.nan)
-        mass, cubics = np.array(self.coefficients()), np.ascontiguousarray(cubics)
+        parts = max(1, math.ceil(TURN * stiffest * step / MAX_STEP_ANGLE))
+        displacement, w = np.full(len(cubics) + 1, np.nan), TURN * self.f
+        smooth = (w * w, 2.0 * self.zeta * w, self.square, self.cube, self.friction, self.slow)
+        mass = np.array([*smooth, self.stop, self.position, self.side])
+        cubics = np.ascontiguousarray(cubics)
         run = load_loop("single_mass").displace
         run.argtypes = [c_void_p, c_void_p, c_size_t, c_double, c_int, c_double, c_void_p]
         places = mass.ctypes.data, cubics.ctypes.data
@@ -64,7 +61,7 @@ class SingleMass:
         from scipy.linalg import expm
         from scipy.signal import lfilter
 
-        w = 2.0 * math.pi * self.f
+        w = TURN * self.f
         # of displacement, speed, and the base's acceleration with its derivatives
         rates = np.eye(6, k=1)
         rates[1, :3] = -w * w, -2.0 * self.zeta * w, -1.0

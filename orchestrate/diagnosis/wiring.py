@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..constants import GRAVITY, TURN
 from ..errors import InputError
@@ -51,6 +50,7 @@ class WiringSettings:
 
 
 WIRING = WiringSettings()
+QUANTITIES = {1: ("velocity", "m/s"), 2: ("displacement", "m")}  # by derivatives to acceleration
 
 
 @dataclass(frozen=True)
@@ -90,14 +90,11 @@ def wiring_notes(channels: Channels, settings: WiringSettings = WIRING) -> list[
     if any(note.kind in ("swapped", "quantity") for note in notes):
         return notes  # to be read again first
     notes += lost_sample_notes(orders, settings)
-    notes += [
-        note for row in range(len(channels.names)) for note in hum_notes(orders, row, settings)
-    ]
-    samples = channels.sample_rate / orders.resonance
+    for row in range(len(channels.names)):
+        notes += hum_notes(orders, row, settings)
+    samples, hertz = channels.sample_rate / orders.resonance, orders.resonance
     if samples < settings.samples:
-        text = (
-            f"{samples:.3g} samples in a period of {orders.resonance:.3g} Hz, the largest response"
-        )
+        text = f"{samples:.3g} samples in a period of {hertz:.3g} Hz, the largest response"
         notes.append(Note("sampling", f"{text}; expected {settings.samples:g} or more"))
     return notes
 
@@ -107,10 +104,10 @@ def notes_without_sine(channels: Channels, settings: WiringSettings) -> Iterator
     base = channels.names.index(BOX)
     spread = channels.values.std(axis=1)
     for row, name in enumerate(channels.names):
-        face, values = SHORT_NAMES[name], channels.values.copy()
-        values[[base, row]] = values[[row, base]]
         if row == base:
             continue
+        face, values = SHORT_NAMES[name], channels.values.copy()
+        values[[base, row]] = values[[row, base]]
         try:
             exchanged = replace(channels, values=values)
             orders = orders_with_floors(exchanged, *sine_windows_and_amplitudes(exchanged))
@@ -160,7 +157,12 @@ def sensor_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> It
         return
     order, best = min(fits.items(), key=lambda item: item[1].misfit)
     if best.misfit < min(settings.misfit, straight.misfit / settings.derived):
-        yield quantity_note(name if order > 0 else "base", order, best)
+        read, (motion, unit) = name if order > 0 else "base", QUANTITIES[abs(order)]
+        thousands = np.log10(abs(best.factor)) / 3.0 * np.sign(order)
+        prefix = ("", "m", "u", "n")[int(np.clip(np.rint(thousands), 0, 3))]
+        text = f"{read} moves as a {motion}, not an acceleration, at {best.frequency:.3g} Hz"
+        mend = f'unit="{read.replace(" ", "")}={prefix}{unit}"'
+        yield Note("quantity", f"{text}: its unit, or the other's? {mend}")
     elif straight.misfit < settings.misfit:
         yield from straight.notes(name, settings)
 
@@ -169,16 +171,6 @@ def is_above_floor(orders: RecordOrders, row: int, settings: WiringSettings) -> 
     """Return whether a channel's order 1 is above the floor in most of the windows."""
     above = np.abs(orders.amplitude[row, 0]) > settings.floor * orders.floor[row]
     return bool(above.mean() > 0.5)
-
-
-def quantity_note(name: str, order: int, fit: LowResponse) -> Note:
-    """Return the note on a velocity or displacement read as an acceleration."""
-    motion, unit = {1: ("velocity", "m/s"), 2: ("displacement", "m")}[abs(order)]
-    thousands = np.log10(abs(fit.factor)) / 3.0 * np.sign(order)
-    prefix = ("", "m", "u", "n")[int(np.clip(np.rint(thousands), 0, 3))]
-    moves = f"{name} moves as a {motion}, not an acceleration, at {fit.frequency:.3g} Hz"
-    text = f"{moves}: its unit, or the other's?"
-    return Note("quantity", f'{text} unit="{name.replace(" ", "")}={prefix}{unit}"')
 
 
 @dataclass(frozen=True)
@@ -283,8 +275,9 @@ def lost_sample_notes(orders: RecordOrders, settings: WiringSettings) -> Iterato
 
 def hum_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> Iterator[Note]:
     """Yield a note on a line of the mains in a channel."""
-    channels = orders.channels
+    channels, values = orders.channels, orders.channels.values[row]
     count = int(settings.hum_time * channels.sample_rate)
+    weights = np.hanning(count) * 2.0 / np.hanning(count).sum()
     starts = np.arange(0, len(channels.time) - count, count, dtype=np.intp)
     middle = channels.time[starts] + 0.5 * settings.hum_time
     swept = np.interp(middle, orders.windows.time, orders.windows.frequency)
@@ -294,7 +287,8 @@ def hum_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> Itera
         if away.sum() < settings.fewest:
             continue
         beside = (mains + off for off in (0.0, *settings.beside))  # Hz, itself the first
-        lines = np.stack([line_amplitudes(channels, row, starts, count, hz) for hz in beside])
+        turned = (values * np.exp(-1j * TURN * hertz * channels.time) for hertz in beside)
+        lines = np.array([[weights @ one[k : k + count] for k in starts] for one in turned])
         size = np.median(np.abs(lines[:, away]), axis=1)
         pairs = away[1:] & away[:-1]
         turned = (lines[0, 1:] * lines[0, :-1].conj())[pairs]
@@ -303,13 +297,3 @@ def hum_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> Itera
             name = SHORT_NAMES[channels.names[row]]
             text = f"{name} has a line of {size[0]:.2g} m/s2 at {mains:g} Hz, of the mains"
             yield Note("hum", f"{text}: look for a loop of earth")
-
-
-def line_amplitudes(
-    channels: Channels, row: int, starts: NDArray[np.intp], count: int, hertz: float
-) -> Complexes:
-    """Return the complex amplitude of a line in windows with Hann weights, m/s2."""
-    weights = np.hanning(count) * 2.0 / np.hanning(count).sum()
-    turn = np.exp(-1j * TURN * hertz * channels.time)
-    values = channels.values[row] * turn
-    return np.array([weights @ values[begin : begin + count] for begin in starts])

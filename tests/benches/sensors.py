@@ -47,7 +47,7 @@ def delay_filter(taps: Floats, steps: float) -> Floats:
     return np.asarray((1.0 - part) * np.roll(long, whole) + part * np.roll(long, whole + 1))
 
 
-@functools.cache
+@functools.lru_cache(maxsize=1)  # of one bench
 def antialiasing_filter(factor: int) -> Floats:
     """Return a digitiser's symmetric anti-aliasing filter, whose delay is compensated."""
     count = 2 * (TAPS * factor // 2) + 1
