@@ -211,11 +211,17 @@ def test_an_offset_is_in_no_order_of_a_sweep():
     assert abs(project_on_waves(face, waves)) == pytest.approx([1.0, 0.0], abs=0.01)
 
 
+@pytest.fixture(autouse=True)
+def short(monkeypatch):
+    """Half as long sweeps of the benches."""
+    monkeypatch.setattr(recipe, "DURATION", 20.0)
+
+
 def timed(kind, seed, sensors=1):
     """Draw a record of a kind; return what strikes in it, shut faces' frequency 3 % uncertain."""
     rng = np.random.default_rng([seed, 17])
-    case = recipe.draw(rng, kind, recipe.Conditions(sensors=sensors), kinds=KINDS)
-    truth, guess = case.truth, case.guess
+    (case,) = recipe.draw_levels(rng, kind, recipe.Conditions(sensors=sensors), kinds=KINDS)
+    truth, guess = case.truth.halves, case.guess
     masses, turns = np.array([guess.m1, guess.m2]), np.array([truth.f1, truth.f2])
     shut = math.sqrt((masses * turns**2).sum() / masses.sum()) * rng.uniform(0.97, 1.03)
     return measure_strikes(checked_base_and_faces(case.record), shut)
@@ -295,7 +301,8 @@ def test_a_growth_is_counted_from_rest_and_from_the_least_stiffness_of_shut_face
 
 def test_beams_of_other_frequencies_have_the_same_numbers():
     """Six milliseconds were a fifteenth of a period at 12 Hz: blows were not told as opposite."""
-    channels = checked_base_and_faces(recipe.draw(np.random.default_rng(5), "delaminated").record)
+    (case,) = recipe.draw_levels(np.random.default_rng(5), "delaminated")
+    channels = checked_base_and_faces(case.record)
     slow = replace(channels, time=4.0 * channels.time, sample_rate=0.25 * channels.sample_rate)
     expected, found = measure_strikes(channels, 45.0), measure_strikes(slow, 11.25)
     assert expected.heard > 20.0

@@ -99,10 +99,14 @@ def test_a_velocity_or_displacement_that_is_read_as_an_acceleration_is_named(nam
 @pytest.mark.parametrize("participation", [0.3, 0.8, 1.6])
 def test_a_clean_record_has_no_note(participation):
     assert notes(sweep(participation)) == []
-    assert notes(with_hum(sweep(noise=0.05), BASE)) != []
-    (note,) = notes(with_hum(sweep(participation), FACE, 60.02))
-    assert note.kind == "hum" and "at 60 Hz" in note.text
-    assert notes(with_hum(sweep(participation), FACE, 55.0)) == []
+
+
+def test_hum_is_a_line_at_a_frequency_of_the_mains():
+    """Not at another one, and no tone of the base."""
+    (of_base,) = notes(with_hum(sweep(noise=0.05), BASE))
+    (of_face,) = notes(with_hum(sweep(), FACE, 60.02))
+    assert "base has a line" in of_base.text and "at 60 Hz" in of_face.text
+    assert notes(with_hum(sweep(), FACE, 55.0)) == []
     tone = 4.0 * np.sin(np.arange(COUNT) * np.pi / 8.0) + 1e-3 * sweep(noise=0.0)[BASE]
     assert notes({BASE: tone, FACE: 3.0 * tone}) == []
 
@@ -135,7 +139,7 @@ def rising(seed=0, noise=0.02, leak=0.0, lost=0):
 @pytest.mark.filterwarnings("error::RuntimeWarning")
 def test_notes_weigh_what_the_base_moves():
     """Where it moves little, noise turns its phase and a leak of the drive outweighs a face."""
-    assert [notes(rising(seed), 300.0) for seed in range(8)] == [[]] * 8
+    assert [notes(rising(seed), 300.0) for seed in range(4)] == [[]] * 4
     assert [note.kind for note in notes(rising(lost=3), 300.0)] == ["lost samples"]
     leaking = rising(noise=0.002, leak=0.1)
     assert notes(leaking, 300.0) == []  # it moved as a displacement
