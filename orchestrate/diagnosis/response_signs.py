@@ -145,10 +145,8 @@ def curves_by_direction(
 
 def curve_and_noise_by_spectra(channels: Channels) -> ResponseSigns:
     """Compute the response at the lines that the box excites, and the noise; without orders."""
-    segments, faces, rate = welch_segments(channels), channels.values[1:], channels.sample_rate
-    frequency, box, rows, cross = segments.compute_spectra(channels.box, faces, rate)
-    excited = excited_lines(frequency, box)
-    low, high = 0.36 * rate, 0.44 * rate
+    _, (frequency, box, rows, cross), excited = spectra_and_excited_lines(channels)
+    low, high = 0.36 * channels.sample_rate, 0.44 * channels.sample_rate
     density = median_of_finite_columns(rows[:, (frequency >= low) & (frequency <= high)])
     response = cross[:, excited] / box[excited]
     level, unknown = float(channels.box.std()), np.full(len(rows), np.nan)
@@ -159,25 +157,23 @@ def curve_and_noise_by_spectra(channels: Channels) -> ResponseSigns:
     return ResponseSigns({}, {}, curves, noise, highest)
 
 
-def welch_segments(channels: Channels) -> WelchSegments:
-    return divide_into_segments(channels, None, "hann", OVERLAP, fewest=2)
-
-
-def excited_lines(frequency: Floats, box: Floats) -> NDArray[np.bool_]:
-    """Return a mask of the lines of a spectrum that the base excites."""
-    return np.asarray((box >= EXCITED * box.max()) & (frequency > 0.0))
+def spectra_and_excited_lines(
+    channels: Channels,
+) -> tuple[WelchSegments, tuple[Floats, Floats, Floats, Floats], NDArray[np.bool_]]:
+    """Return segments, their spectra, and a mask of the lines that the base excites."""
+    segments = divide_into_segments(channels, None, "hann", OVERLAP, fewest=2)
+    spectra = segments.compute_spectra(channels.box, channels.values[1:], channels.sample_rate)
+    frequency, box, *_ = spectra
+    return segments, spectra, (box >= EXCITED * box.max()) & (frequency > 0.0)
 
 
 def coherence_loss(channels: Channels, noise: Floats) -> ValueAndFloor:
     """Return the mean of 1 less the coherence over the excited lines, and that of noise."""
     try:
-        segments = welch_segments(channels)
+        segments, (_, box, rows, cross), excited = spectra_and_excited_lines(channels)
     except InputError:
         unknown = np.full(len(noise), np.nan)
         return unknown, unknown
-    faces, rate = channels.values[1:], channels.sample_rate
-    frequency, box, rows, cross = segments.compute_spectra(channels.box, faces, rate)
-    excited = excited_lines(frequency, box)
     with np.errstate(invalid="ignore", divide="ignore"):
         power = rows[:, excited]
         coherence = np.abs(cross[:, excited]) ** 2 / (box[excited] * power)

@@ -52,7 +52,6 @@ SUBJECTS = {
     "orchestrate/diagnosis/impact_timing.py": (f"{DIAGNOSIS}/test_impact_timing.py",),
     "orchestrate/diagnosis/wiring.py": (
         f"{DIAGNOSIS}/test_wiring_thresholds.py",
-        f"{DIAGNOSIS}/test_thresholds.py",
         f"{DIAGNOSIS}/test_wiring.py",
     ),
 }

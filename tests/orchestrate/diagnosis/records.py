@@ -15,7 +15,7 @@ RATE = 600.0
 
 
 @functools.cache
-def record(structure=BEAM, noise=0.0, both=True, gain=1.0, seed=1, sweep=SWEEP, rate=RATE):
+def record(structure=BEAM, noise=0.0, both=True, seed=1, sweep=SWEEP, rate=RATE):
     """What sensors of a bandwidth of rate/2.4 read, with noise as a part of each channel's rms."""
     history = orchestrate.shake(structure, sweep, sample_rate=rate, progress=False)
     felt = orchestrate.measure(
@@ -24,7 +24,6 @@ def record(structure=BEAM, noise=0.0, both=True, gain=1.0, seed=1, sweep=SWEEP, 
     rng = np.random.default_rng(seed)
     names = ["box_acceleration", "acceleration1", *(["acceleration2"] if both else [])]
     channels = {name: felt[name].values for name in names}
-    channels["acceleration1"] = gain * channels["acceleration1"]
     noisy = {
         name: values + noise * values.std() * rng.standard_normal(len(values))
         for name, values in channels.items()

@@ -1,4 +1,4 @@
-"""Each threshold of the verdict and of the wiring has a case just inside and one just outside."""
+"""Each threshold of the verdict and of the search has a case just inside and one just outside."""
 
 import math
 from dataclasses import replace
@@ -18,7 +18,6 @@ from orchestrate.diagnosis.opening_measures import measure_opening, order_2_thre
 from orchestrate.diagnosis.search_job import SearchJob
 from orchestrate.diagnosis.settings import SETTINGS
 from orchestrate.diagnosis.standard_errors import contact_covariance
-from orchestrate.diagnosis.wiring import WIRING, LowResponse, is_above_floor, sensor_notes
 
 from .records import BEAM
 from .test_verdicts import OPENED, QUIET
@@ -55,63 +54,6 @@ def test_the_threshold_of_two_levels(level, verdict):
 def test_a_record_of_the_same_level_contradicts_and_one_of_a_lower_does_not(level, verdict):
     quiet = replace(QUIET, high=level * OPENED.high)
     assert Beam((OPENED, quiet)).verdict() == verdict
-
-
-@pytest.mark.parametrize(
-    ("factor", "delay", "kinds"),
-    [
-        (9.80665 * math.exp(0.24), 0.0, ["unit"]),
-        (9.80665 * math.exp(0.26), 0.0, ["scale"]),
-        (math.exp(-0.24) / 9.80665, 0.0, ["unit"]),
-        (math.exp(-0.26) / 9.80665, 0.0, ["scale"]),
-        (2.49, 0.0, []),
-        (2.51, 0.0, ["scale"]),
-        (1.0 / 2.49, 0.0, []),
-        (1.0 / 2.51, 0.0, ["scale"]),
-        (-1.0, 0.0, ["polarity"]),
-        (1.0, 0.99e-3, []),
-        (1.0, -1.01e-3, ["delay"]),
-        (1.0, 0.01 * 7.4 / (2.0 * math.pi * 10.0), []),  # below 7.5 times the misfit's phase
-        (1.0, 0.01 * 7.6 / (2.0 * math.pi * 10.0), ["delay"]),
-    ],
-)
-def test_each_threshold_of_a_gain_and_a_delay(factor, delay, kinds):
-    misfit = 0.01 if abs(delay) > 1.1e-3 else 0.0
-    fit = LowResponse(10.0, factor, delay, misfit)
-    assert [note.kind for note in fit.notes("face 1", WIRING)] == kinds
-
-
-def orders(face, base, floor=0.0):
-    """Orders of a record whose windows have some amplitudes of order 1."""
-    face, base = np.array(face, dtype=complex), np.array(base, dtype=complex)
-    return SimpleNamespace(
-        channels=SimpleNamespace(names=("acceleration1",)),
-        amplitude=face[None, None, :],
-        floor=np.full((1, len(face)), floor),
-        order_amplitudes=lambda number, name: base,
-        windows=SimpleNamespace(frequency=np.linspace(10.0, 20.0, len(face))),
-        level=np.ones(len(face)),
-    )
-
-
-@pytest.mark.parametrize(
-    ("face", "base", "floor", "kinds"),
-    [
-        ([1.0, 1.0, 1.0, 0.1], [1.0] * 4, 0.33, []),
-        ([1.0, 1.0, 0.1, 0.1], [1.0] * 4, 0.33, ["dead"]),  # in half of the windows
-        ([1.0, 1.0, 1.0, 0.1], [1.0] * 4, 0.34, ["dead"]),  # three times the floor
-        ([0.051] * 4, [1.0] * 4, 0.0, []),
-        ([0.049] * 4, [1.0] * 4, 0.0, ["dead"]),
-        ([0.049, 0.049, 0.15, 0.049], [1.0] * 4, 0.0, []),  # but with a resonance
-        ([0.049, 0.049, 0.14, 0.049], [1.0] * 4, 0.0, ["dead"]),
-        ([1.0] * 4, [1.0, 1.0, 3.1, 1.0], 0.0, ["swapped"]),
-        ([1.0] * 4, [1.0, 1.0, 2.9, 0.5], 0.0, []),  # over the larger end
-    ],
-)
-def test_each_threshold_of_a_dead_or_exchanged_sensor(face, base, floor, kinds):
-    made = orders(face, base, floor)
-    assert [note.kind for note in sensor_notes(made, 0, WIRING)] == kinds
-    assert is_above_floor(made, 0, WIRING) or kinds == ["dead"]
 
 
 def windows(one, other=None, noise=0.0, floor=0.0):

@@ -1,5 +1,6 @@
-"""Thresholds of the notes on samples, lines of the mains and fits: just inside, just outside."""
+"""Thresholds of the notes on gains, samples and lines of the mains: just inside, just outside."""
 
+import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,6 +13,63 @@ from orchestrate.laboratory.analysis.channels import Channels
 
 RATE = 512.0
 BASE, FACE = "box_acceleration", "acceleration1"
+
+
+@pytest.mark.parametrize(
+    ("factor", "delay", "kinds"),
+    [
+        (9.80665 * math.exp(0.24), 0.0, ["unit"]),
+        (9.80665 * math.exp(0.26), 0.0, ["scale"]),
+        (math.exp(-0.24) / 9.80665, 0.0, ["unit"]),
+        (math.exp(-0.26) / 9.80665, 0.0, ["scale"]),
+        (2.49, 0.0, []),
+        (2.51, 0.0, ["scale"]),
+        (1.0 / 2.49, 0.0, []),
+        (1.0 / 2.51, 0.0, ["scale"]),
+        (-1.0, 0.0, ["polarity"]),
+        (1.0, 0.99e-3, []),
+        (1.0, -1.01e-3, ["delay"]),
+        (1.0, 0.01 * 7.4 / (2.0 * math.pi * 10.0), []),  # below 7.5 times the misfit's phase
+        (1.0, 0.01 * 7.6 / (2.0 * math.pi * 10.0), ["delay"]),
+    ],
+)
+def test_each_threshold_of_a_gain_and_a_delay(factor, delay, kinds):
+    misfit = 0.01 if abs(delay) > 1.1e-3 else 0.0
+    fit = LowResponse(10.0, factor, delay, misfit)
+    assert [note.kind for note in fit.notes("face 1", WIRING)] == kinds
+
+
+def orders(face, base, floor=0.0):
+    """Orders of a record whose windows have some amplitudes of order 1."""
+    face, base = np.array(face, dtype=complex), np.array(base, dtype=complex)
+    return SimpleNamespace(
+        channels=SimpleNamespace(names=(FACE,)),
+        amplitude=face[None, None, :],
+        floor=np.full((1, len(face)), floor),
+        order_amplitudes=lambda number, name: base,
+        windows=SimpleNamespace(frequency=np.linspace(10.0, 20.0, len(face))),
+        level=np.ones(len(face)),
+    )
+
+
+@pytest.mark.parametrize(
+    ("face", "base", "floor", "kinds"),
+    [
+        ([1.0, 1.0, 1.0, 0.1], [1.0] * 4, 0.33, []),
+        ([1.0, 1.0, 0.1, 0.1], [1.0] * 4, 0.33, ["dead"]),  # in half of the windows
+        ([1.0, 1.0, 1.0, 0.1], [1.0] * 4, 0.34, ["dead"]),  # three times the floor
+        ([0.051] * 4, [1.0] * 4, 0.0, []),
+        ([0.049] * 4, [1.0] * 4, 0.0, ["dead"]),
+        ([0.049, 0.049, 0.15, 0.049], [1.0] * 4, 0.0, []),  # but with a resonance
+        ([0.049, 0.049, 0.14, 0.049], [1.0] * 4, 0.0, ["dead"]),
+        ([1.0] * 4, [1.0, 1.0, 3.1, 1.0], 0.0, ["swapped"]),
+        ([1.0] * 4, [1.0, 1.0, 2.9, 0.5], 0.0, []),  # over the larger end
+    ],
+)
+def test_each_threshold_of_a_dead_or_exchanged_sensor(face, base, floor, kinds):
+    made = orders(face, base, floor)
+    assert [note.kind for note in wiring.sensor_notes(made, 0, WIRING)] == kinds
+    assert wiring.is_above_floor(made, 0, WIRING) or kinds == ["dead"]
 
 
 @pytest.mark.parametrize(("highest", "fitted"), [(27.9, True), (28.1, False)])
@@ -54,16 +112,8 @@ def test_how_well_a_fit_describes_a_sensor(monkeypatch, straight, velocity, kind
     misfits = iter((1.0, 1.0, straight, velocity, 1.0))  # by the power of i w, from -2 on
     fits = lambda *given: LowResponse(10.0, -1.0, 0.0, next(misfits))  # noqa: E731
     monkeypatch.setattr(LowResponse, "fit", fits)
-    one = np.ones(6, complex)
-    orders = SimpleNamespace(
-        channels=SimpleNamespace(names=(FACE,)),
-        amplitude=one[None, None],
-        floor=np.zeros((1, 6)),
-        order_amplitudes=lambda number, name: one,
-        windows=SimpleNamespace(frequency=np.linspace(10.0, 20.0, 6)),
-        level=np.ones(6),
-    )
-    assert [note.kind for note in wiring.sensor_notes(orders, 0, WIRING)] == kinds
+    made = orders(np.ones(6), np.ones(6))
+    assert [note.kind for note in wiring.sensor_notes(made, 0, WIRING)] == kinds
 
 
 def record(values, hertz):
