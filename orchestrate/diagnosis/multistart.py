@@ -109,7 +109,7 @@ class Search:
         try:
             end = least_squares(residuals, tried[0], derivatives, limits, **scales, **ends).x
         except EnoughMotionsError:
-            end = tried[-1]
+            end = tried[-1]  # which need not be the lowest
         return Solution(self.hypothesis.name, named(end), misfit(self.residuals(named(end))))
 
     def polish(self, start: Solution) -> Solution:

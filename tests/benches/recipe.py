@@ -15,7 +15,7 @@ from orchestrate.lazy import xr
 
 from .beam import DelaminatedBeam
 from .bench import Bench
-from .excitation import Random, Stepped, Swept
+from .excitation import Excitation, Random, Stepped, Swept
 from .integrator import UnboundedMotionError
 from .lumped import Clamp, Faces, Halves, cubic_stiffness, in_rattling_clamp
 from .sensors import Sensor
@@ -23,6 +23,8 @@ from .system import ModalSystem, Motion
 
 OPENED = 1e-6  # m: a gap that counts; a penalty lets go of less where nothing opens
 FIRST, LAST, DURATION = 20.0, 90.0, 40.0  # Hz, Hz, s
+LEVEL = (2.0, 10.0)  # m/s2
+PRELOAD = (0.1, 1.6)  # force on the faces, over the one that opens them at resonance
 SPLIT = ("delaminated", "gap", "preloaded")
 EXCITATIONS = ("up", "down", "log", "stepped", "random")
 MOST_APART = 1.5  # frequencies of a guess; the second mode of a hardly delaminated beam is far away
@@ -78,7 +80,6 @@ class Conditions:
     """Ranges from which a test's conditions are drawn, uniformly in the logarithm."""
 
     noise: tuple[float, float] = (0.01, 0.05)
-    level: tuple[float, float] = (2.0, 10.0)  # m/s2
     # one of `EXCITATIONS`, or `"any"`: one up in ten is log, stepped, random
     excitation: str = "up"
     sensors: int = 0  # 1 or 2, or 0 for either
@@ -89,11 +90,7 @@ class Conditions:
     anywhere: bool = False
     sensor: tuple[float, float] | None = None
     participation: tuple[float, float] = (1.0, 1.0)  # of each sensor on masses
-    # force that presses the faces together, over the one that opens them at resonance
-    preload: tuple[float, float] = (0.1, 1.6)
     off: float = 0.1  # how far guesses may be off
-    # of the sensor on face 1, over its largest signal: below 1 it saturates
-    range: float = math.inf
 
 
 def draw_log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
@@ -154,7 +151,7 @@ def draw_preloaded(rng: np.random.Generator, level: float, conditions: Condition
     one = own.bonded_beam()
     peak = level / (2.0 * one.zeta)  # acceleration over the base
     force = own.m1 * peak * abs((own.f1 / one.f) ** 2 - 1.0)
-    clearance = -rng.uniform(*conditions.preload) * force * (1.0 / k1 + 1.0 / k2)
+    clearance = -rng.uniform(*PRELOAD) * force * (1.0 / k1 + 1.0 / k2)
     return two_mass_specimen(rng, own, clearance)
 
 
@@ -294,9 +291,7 @@ KINDS: Mapping[str, Maker] = {
 }
 
 
-def draw_excitation(
-    rng: np.random.Generator, name: str, level: float
-) -> tuple[str, Swept | Stepped | Random]:
+def draw_excitation(rng: np.random.Generator, name: str, level: float) -> tuple[str, Excitation]:
     """Draw a base excitation of a kind, or of any kind; return the kind's name and it."""
     if name == "any":
         name = str(rng.choice(EXCITATIONS, p=(0.6, 0.15, 0.1, 0.1, 0.05)))
@@ -345,7 +340,7 @@ def draw_levels(
     times: Sequence[float] = (1.0,),
 ) -> list[Case]:
     """Draw a beam and a bench, and measure it at multiples of the level it is drawn for."""
-    level = draw_log_uniform(rng, *conditions.level)
+    level = draw_log_uniform(rng, *LEVEL)
     noise = draw_log_uniform(rng, *conditions.noise)
     name, shaker = draw_excitation(rng, conditions.excitation, level)
     count = conditions.sensors or int(rng.integers(1, 3))
@@ -354,7 +349,7 @@ def draw_levels(
     bench = Bench(
         excitation=shaker,
         box=replace(box, noise=min(noise, 0.02)),
-        face1=replace(face1, range=conditions.range),
+        face1=face1,
         face2=face2 if count == 2 else None,
         rate=rate,
         steps=30.0 if "elements" in kind else 60.0,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,15 +16,13 @@ TAPS = 46  # of it, for each sample left out: 80 dB from 0.95 of half the sampli
 
 @dataclass(frozen=True, kw_only=True)
 class Sensor:
-    """One accelerometer: bandwidth, gain, delay, noise and range."""
+    """One accelerometer: bandwidth, gain, delay and noise."""
 
     bandwidth: float = 2000.0  # Hz, 3 dB down
     order: int = 2  # of its low-pass filter (Butterworth)
     gain: float = 1.0  # 1.03 reads 3 % too much
     delay: float = 0.0  # s, beside that of the filter
     noise: float = 0.01  # standard deviation over the root mean square of the signal
-    # largest reading over the largest value of the signal: below 1 the sensor saturates
-    range: float = math.inf
 
     def read(self, signal: Floats, rate: float, factor: int, rng: np.random.Generator) -> Floats:
         """Return samples of a signal at `rate`, Hz, one of `factor`: filtered, late, with noise."""
@@ -33,11 +30,7 @@ class Sensor:
         taps = self.gain * delay_filter(antialiasing_filter(factor), self.delay * rate)
         sampled = resample_poly(sosfilt(sections, signal), 1, factor, window=taps)
         rms = float(np.sqrt(np.mean(sampled**2)))
-        noisy = np.asarray(sampled + self.noise * rms * rng.normal(size=sampled.shape))
-        if math.isinf(self.range):
-            return noisy
-        largest = self.range * float(np.abs(sampled).max())
-        return np.clip(noisy, -largest, largest)
+        return np.asarray(sampled + self.noise * rms * rng.normal(size=sampled.shape))
 
 
 def delay_filter(taps: Floats, steps: float) -> Floats:
