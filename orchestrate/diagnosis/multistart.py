@@ -27,7 +27,6 @@ MIN_DISTANCES = {"split": 0.04, "clearance": 0.1}  # between two solutions that 
 class Solution:
     """Hold a minimum of the misfit of a hypothesis: its numbers and its misfit."""
 
-    name: str  # of the hypothesis
     values: Mapping[str, float]
     misfit: float  # see `misfit`; 1 is as far as `model_error` and the noise allow
 
@@ -110,7 +109,7 @@ class Search:
             end = least_squares(residuals, tried[0], derivatives, limits, **scales, **ends).x
         except EnoughMotionsError:
             end = tried[-1]  # which need not be the lowest
-        return Solution(self.hypothesis.name, named(end), misfit(self.residuals(named(end))))
+        return Solution(named(end), misfit(self.residuals(named(end))))
 
     def polish(self, start: Solution) -> Solution:
         """Improve a minimum by linear regressions over clouds of points."""
@@ -123,7 +122,7 @@ class Search:
             )
             best = self.rank_starts(model.damped_minima(bounds, here.values))[0]
             if model.lowest < best.misfit:
-                best = Solution(best.name, model.best, model.lowest)
+                best = Solution(model.best, model.lowest)
             shape = model.cloud_covariance()
             if best.misfit < (1.0 - settings.gain) * here.misfit:
                 here, size = best, min(1.0, 1.5 * size)
@@ -139,8 +138,7 @@ class Search:
         found = []
         for start in starts:
             values = {name: float(np.clip(start[name], *names[name])) for name in names}
-            size = misfit(self.residuals(values))
-            found.append(Solution(self.hypothesis.name, values, size))
+            found.append(Solution(values, misfit(self.residuals(values))))
         return sorted(found, key=lambda solution: solution.misfit)
 
 

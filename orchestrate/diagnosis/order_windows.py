@@ -53,10 +53,9 @@ EXPECTED = "not described by this method: expected a swept or stepped sine"
 class OrderWindows:
     """Hold the windows of a record, and the least squares that give the orders in them."""
 
-    # middle of each in s, frequency of the excitation there in Hz, its derivative in Hz/s
+    # middle of each in s, frequency of the excitation there in Hz
     time: Floats
     frequency: Floats
-    rate: Floats
     orders: tuple[float, ...]  # `ORDERS` and after them `OFF_ORDERS`
     parts: tuple[slice, ...]  # samples of each
     # complex: a channel's samples times these give `A exp(i theta)` of `A sin(n phase + theta)` for
@@ -80,7 +79,6 @@ class OrderWindows:
         return OrderWindows(
             self.time[windows],
             self.frequency[windows],
-            self.rate[windows],
             self.orders[:order_count],
             tuple(self.parts[i] for i in windows),
             tuple(np.ascontiguousarray(self.solutions[i][:, :order_count]) for i in windows),
@@ -275,7 +273,6 @@ def assemble_windows(channels: Channels, windows: list[Window]) -> OrderWindows:
     return OrderWindows(
         np.array([one.time for one in windows]),
         np.array([one.frequency for one in windows]),
-        np.array([one.rate for one in windows]),
         (*ORDERS, *OFF_ORDERS),
         tuple(one.part for one in windows),
         tuple(refer_to_base(box, one, least_squares_matrix(one, rate)) for one in windows),

@@ -201,12 +201,10 @@ class SearchJob(Job):
 
     def read_solutions(self, table: Table, position: int) -> list[Solution]:
         """Read the solutions of a hypothesis from a table, the best first."""
-        hypothesis = self.hypotheses[position]
-        names = list(hypothesis.bounds(self.evidence))
+        names = list(self.hypotheses[position].bounds(self.evidence))
         rows = table["solutions"][table["place"] == position].reshape(-1, 1 + MAX_NUMBERS)
-        found = []
-        for size, *numbers in rows[np.isfinite(rows[:, 0])].tolist():
-            found.append(Solution(hypothesis.name, dict(zip(names, numbers, strict=False)), size))
+        rows = rows[np.isfinite(rows[:, 0])].tolist()
+        found = [Solution(dict(zip(names, row[1:], strict=False)), row[0]) for row in rows]
         return sorted(found, key=lambda solution: solution.misfit)
 
     # -- the end of it ----------------------------------------------------------------------------
@@ -279,7 +277,7 @@ class SearchJob(Job):
         return sorted(solutions, key=penalised_misfit)
 
     def result_columns(
-        self, minima: tuple[Search, list[Solution]], player: Player, with_errors: bool = True
+        self, minima: tuple[Search, list[Solution]], player: Player, with_errors: bool
     ) -> dict[str, Any]:
         """Return the best solution of a hypothesis with its errors, residuals and fitted orders."""
         search, found = minima

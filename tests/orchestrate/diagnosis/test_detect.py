@@ -199,7 +199,7 @@ def test_of_halves_that_may_change_places_the_guess_decides():
     search = Search(job.hypotheses[-2], job.evidence)
     there = search.hypothesis.values_from_structure(guess(), job.evidence)
     mirrored = {**there, "split": -there["split"]}
-    like, unlike = Solution("x", there, 1.05), Solution("x", mirrored, 1.0)
+    like, unlike = Solution(there, 1.05), Solution(mirrored, 1.0)
     assert job.sort_by_misfit_and_guess(search, [unlike, like])[0] is like
-    much_better = Solution("x", mirrored, 0.5)
+    much_better = Solution(mirrored, 0.5)
     assert job.sort_by_misfit_and_guess(search, [like, much_better])[0] is much_better

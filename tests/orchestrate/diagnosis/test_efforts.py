@@ -48,12 +48,10 @@ def test_one_goes_downhill_from_starts_that_differ(monkeypatch, is_rugged, count
     """Halves that change places are two solutions, however near each other."""
     begun, search = [], MadeUp(lambda x, y: [x, y])
     monkeypatch.setattr(Bonded, "is_rugged", is_rugged)
-    monkeypatch.setattr(
-        search, "minimise", lambda values: begun.append(values) or Solution("", {}, 1)
-    )
+    monkeypatch.setattr(search, "minimise", lambda values: begun.append(values) or Solution({}, 1))
     search.find_minima([{**HERE, "f": f} for f in (40.0, 35.0, 36.0, 39.0, 38.0)])
     assert [values["f"] for values in begun] == [35.0, 36.0, 38.0, 39.0][:count]
-    one, near, other = (Solution("x", {"split": s, "e": 0.5}, 0.2) for s in (0.015, 0.02, -0.015))
+    one, near, other = (Solution({"split": s, "e": 0.5}, 0.2) for s in (0.015, 0.02, -0.015))
     assert without_neighbours([one, near, other]) == [one, other]
 
 
@@ -87,7 +85,7 @@ def test_four_regressions_at_most_and_three_that_gain_little(monkeypatch, gain, 
         return SimpleNamespace(**model, cloud_covariance=lambda: np.eye(2))
 
     monkeypatch.setattr(multistart, "LinearModel", SimpleNamespace(fit_to_cloud=fit_to_cloud))
-    MadeUp(lambda x, y: [9.0]).polish(Solution("", HERE, 1.0))
+    MadeUp(lambda x, y: [9.0]).polish(Solution(HERE, 1.0))
     assert done[1:] == pytest.approx(sizes)
 
 
@@ -113,7 +111,7 @@ def test_squares_are_beyond_noise_from_1_3_times_its_own(monkeypatch, times, mor
 def test_settings_that_are_assumed_differ_or_are_refused():
     """Two minima are two from misfits of 1.03 on; without a guess halves lie around a resonance."""
     for ratio, count in ((1.029, 1), (1.031, 2)):
-        pair = [Solution("x", HERE, ratio * 0.5), Solution("x", HERE, 0.5)]
+        pair = [Solution(HERE, ratio * 0.5), Solution(HERE, 0.5)]
         assert len(with_distinct_misfits(pair, SETTINGS.distinct)) == count
     guess = assumed_halves(40.0, SETTINGS)
     assert (guess.f1, guess.f2, guess.zeta1, guess.e) == pytest.approx((38.0, 42.0, 0.01, 0.6))
