@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -15,17 +16,27 @@ FOLDER = "oscillator"
 SETTERS = {REAL: ("Float64", "f8"), INTEGER: ("Int32", "i4"), BOOLEAN: ("Boolean", "u1")}
 
 
+@functools.cache
+def compiled(code: bytes) -> tuple[Any, Any]:
+    """Return the engine and the module, which is compiled once for all instances."""
+    import wasmtime
+
+    engine = wasmtime.Engine()
+    module = wasmtime.Module(engine, code)
+    assert not module.imports
+    return engine, module
+
+
 class WebInstance:
     """An oscillator in the WebAssembly module, driven by FMI's functions."""
 
     def __init__(self, kernel: WebKernel) -> None:
         import wasmtime
 
+        engine, module = compiled(kernel.module)
         self.model, self.variables = load_model(FOLDER), kernel.variables[FOLDER]
         self.types = {variable.name: variable.type for variable in self.model.variables}
-        self.store = wasmtime.Store()
-        module = wasmtime.Module(self.store.engine, kernel.module)
-        assert not module.imports
+        self.store = wasmtime.Store(engine)
         self.exports = wasmtime.Instance(self.store, module, []).exports(self.store)
         self.exports["_initialize"](self.store)
         self.room = self.exports["malloc"](self.store, 1024 + 16 * self.model.memory_size)

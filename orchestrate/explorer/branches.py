@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..flags import flag_words
@@ -34,40 +34,28 @@ def branch_json(branch: xr.Dataset | None) -> dict[str, Any]:
 
 
 def branch_lines(branch: xr.Dataset) -> list[dict[str, Any]]:
-    stable = branch.stable.values == 1
-    return [
-        {"x": x.tolist(), "y": gaps.tolist(), "stable": bool(flag)}
-        for samples in branch.xi_rel.transpose("sample", "point").values
-        for x, gaps, flag in split_by_stability(branch["eta"].values.astype(float), samples, stable)
-    ]
-
-
-def split_by_stability(
-    x: NDArray[np.float64], gaps: NDArray[np.float64], stable: NDArray[np.bool_]
-) -> list[tuple[NDArray[np.float64], NDArray[np.float64], bool]]:
-    """Split a line at changes of stability; return abscissas, gaps > 0 and a flag for each part."""
-    kept = gaps > 0.0
-    x, gaps, stable = x[kept], gaps[kept], stable[kept]
-    cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1).tolist(), len(x)]
-    return [
-        (x[a : b + 1], gaps[a : b + 1], bool(stable[a]))
-        for a, b in zip(cuts[:-1], cuts[1:], strict=True)
-        if b > a
-    ]
+    """Return each sample's gaps above 0 as lines that end where the stability changes."""
+    lines = []
+    for samples in branch.xi_rel.transpose("sample", "point").values:
+        kept = samples > 0.0
+        x, gaps = branch["eta"].values.astype(float)[kept], samples[kept]
+        stable = branch.stable.values[kept] == 1
+        cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1).tolist(), len(x)]
+        for a, b in pairwise(cuts):
+            part = slice(a, b + 1)
+            if b > a:
+                line = {"x": x[part].tolist(), "y": gaps[part].tolist(), "stable": bool(stable[a])}
+                lines.append(line)
+    return lines
 
 
 def bifurcation_points(branch: xr.Dataset) -> list[dict[str, Any]]:
     if not branch.sizes.get("bifurcation"):
         return []
-    kinds = branch.bifurcation_kind
-    names = flag_words(kinds.attrs)
+    names = flag_words(branch.bifurcation_kind.attrs)
+    columns = (branch[f"bifurcation_{name}"].values for name in ("value", "kind", "xi_rel"))
     return [
         {"eta": float(value), "gap": float(np.max(gaps)), "kind": names[int(kind)]}
-        for value, kind, gaps in zip(
-            branch.bifurcation_value.values,
-            kinds.values,
-            branch.bifurcation_xi_rel.values,
-            strict=True,
-        )
+        for value, kind, gaps in zip(*columns, strict=True)
         if np.max(gaps) > 0.0
     ]

@@ -28,9 +28,16 @@ def record_json(record: xr.Dataset | None) -> dict[str, Any]:
     if record is None:
         return {"record": None}
     channels = Channels.from_record(record, (BOX, FACE))
-    orders = swept_sine_orders(record)
-    drawn = {"orders": orders} if orders else {"lines": spectral_lines(channels)}
-    return {"record": {"title": channels.title, **drawn}}
+    if orders := swept_sine_orders(record):
+        return {"record": {"title": channels.title, "orders": orders}}
+    face: Floats = channels.values[channels.names.index(FACE)]
+    frequency, amplitude = amplitude_spectrum(face - face.mean(), 1.0 / channels.sample_rate)
+    wide = -(-len(amplitude) // MOST)  # of lines that share a point, the largest
+    padded = np.pad(amplitude, (0, -len(amplitude) % wide)).reshape(-1, wide)
+    largest = padded.argmax(axis=1) + wide * np.arange(len(padded))
+    hertz = frequency[largest] / (2.0 * np.pi)
+    lines = {"frequency": hertz.tolist(), "amplitude": amplitude[largest].tolist()}
+    return {"record": {"title": channels.title, "lines": lines}}
 
 
 def swept_sine_orders(record: xr.Dataset) -> dict[str, Any] | None:
@@ -48,14 +55,3 @@ def swept_sine_orders(record: xr.Dataset) -> dict[str, Any] | None:
     rows = np.where(np.isfinite(rows), rows, 0.0)  # above half the sampling rate
     kept = np.argsort(frequency)[:: -(-len(frequency) // MOST)]
     return {"frequency": frequency[kept].tolist(), "amplitude": rows[:, kept].tolist()}
-
-
-def spectral_lines(channels: Channels) -> dict[str, Any]:
-    """Return frequencies, Hz, and amplitudes of a spectrum: of a long one each part's largest."""
-    face: Floats = channels.values[channels.names.index(FACE)]
-    frequency, amplitude = amplitude_spectrum(face - face.mean(), 1.0 / channels.sample_rate)
-    wide = -(-len(amplitude) // MOST)
-    padded = np.pad(amplitude, (0, -len(amplitude) % wide)).reshape(-1, wide)
-    largest = padded.argmax(axis=1) + wide * np.arange(len(padded))
-    hertz = frequency[largest] / (2.0 * np.pi)
-    return {"frequency": hertz.tolist(), "amplitude": amplitude[largest].tolist()}

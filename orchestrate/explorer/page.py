@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import base64
-import functools
 import hashlib
 import zlib
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -47,6 +47,13 @@ EXPONENT = {  # the usual rule of exponents; periods at first, periods and impac
     **{"periods": 400, "longest": 12_800, "most": 100_000},
 }
 PAGES = STRUCTURE | {name: EXCITATION[name] for name in PUSHES}  # numbers of a page's structure
+POLICY = (  # own script and workers, whose digests stand in it, no network
+    "default-src 'none'; script-src 'sha256-{}' 'wasm-unsafe-eval' blob:; worker-src blob:; "
+    "style-src 'sha256-{}'; img-src data: blob:; base-uri 'none'; form-action 'none'"
+)
+VOLTAGES = (0.8, 0.9, 2.0)  # least, first and largest of the motor's slider, as eta0
+SHOWN_OF_SWEEP = ("settings", "directions", "count", "low", "high", "level")
+STEP = 0.1  # of the coupled run, in 1/omega
 FLAGS = {"bonded": [0.0, 1.0], "wall": [0.0, 1.0]}  # ranges too
 
 
@@ -79,11 +86,9 @@ def explore(
             "that is free, or such a page to be replaced"
         )
     make_writable_folder(path.parent)
-    kernel, drawn = (
-        find_or_compile_web_kernel(build_folder),
-        branch_json(branches) | record_json(record),
-    )
-    text = render_page(chosen, shown_units(asked, chosen.level), drawn, kernel)
+    kernel = find_or_compile_web_kernel(build_folder)
+    curves = branch_json(branches) | record_json(record)
+    text = render_page(chosen, shown_units(asked, chosen.level), curves, kernel)
     return write_atomically(path, lambda place: place.write_text(text, encoding="utf-8"))
 
 
@@ -98,70 +103,45 @@ def first_bytes(path: Path) -> bytes:
 def render_page(
     sweep: SweepData, shown: dict[str, str], curves: dict[str, Any], kernel: WebKernel
 ) -> str:
-    scripts = read_javascript_modules()
-    made_by = f"vibroimpact {__version__}, kernel {kernel.guid}"
-    style, script = read_page_file("style.css"), bundle_modules(scripts, "main")
-    return (
-        template_environment()
-        .get_template("page.html.j2")
-        .render(
-            policy=content_security_policy(style, script),
-            style=Markup(style),  # own sources, in elements whose content HTML takes as it stands
-            script=Markup(script),
-            worker=Markup(bundle_modules(scripts, "worker")),
-            tour=tour_in_units(shown),
-            words=WORDS,
-            branches=curves["branches"],
-            record=curves["record"],
-            source=made_by,
-            swept=f"sweep by {sweep.source}" if sweep.source else "",
-            table={
-                **page_data(sweep),
-                "shown": shown,
-                **curves,
-                "variables": kernel.variables,
-                "loops": {**tables_for_web_page(Pair, StepAnswer), "exponent": EXPONENT},
-                "drive": drive_data(),
-            },
-            data=compress_to_base64(sweep.numbers.astype("<f8").tobytes()),
-            kernel=compress_to_base64(kernel.module),
-            **voltage_slider_values(),
-        )
-    )
-
-
-@functools.cache
-def template_environment() -> jinja2.Environment:
-    return jinja2.Environment(
-        loader=jinja2.PackageLoader("orchestrate.explorer", "page"),
+    scripts = {path.stem: path.read_text(encoding="utf-8") for path in SOURCES.glob("*.js")}
+    style = (SOURCES / "style.css").read_text(encoding="utf-8")
+    script = bundle_modules(scripts, "main")
+    digests = [hashlib.sha256(content.encode()).digest() for content in (script, style)]
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(SOURCES),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
     )
-
-
-def content_security_policy(style: str, script: str) -> str:
-    """Return the page's Content-Security-Policy: own script and workers, no network."""
-    return "; ".join(
-        (
-            "default-src 'none'",
-            f"script-src '{policy_digest(script)}' 'wasm-unsafe-eval' blob:",
-            "worker-src blob:",
-            f"style-src '{policy_digest(style)}'",
-            "img-src data: blob:",
-            "base-uri 'none'",
-            "form-action 'none'",
-        )
+    unit = Drive.from_file("quick").motor_constant * Structure.from_file("quick").omega
+    return environment.get_template("page.html.j2").render(
+        policy=POLICY.format(*(base64.b64encode(digest).decode() for digest in digests)),
+        style=Markup(style),  # own sources, in elements whose content HTML takes as it stands
+        script=Markup(script),
+        worker=Markup(bundle_modules(scripts, "worker")),
+        tour=tour_in_units(shown),
+        words=WORDS,
+        **curves,
+        source=f"vibroimpact {__version__}, kernel {kernel.guid}",
+        swept=f"sweep by {sweep.source}" if sweep.source else "",
+        table={
+            **page_data(sweep),
+            "shown": shown,
+            **curves,
+            "variables": kernel.variables,
+            "loops": {**tables_for_web_page(Pair, StepAnswer), "exponent": EXPONENT},
+            "drive": drive_data(),
+        },
+        data=compress_to_base64(sweep.numbers.astype("<f8").tobytes()),
+        kernel=compress_to_base64(kernel.module),
+        voltages=[f"{eta0 * unit:.6g}" for eta0 in VOLTAGES],
     )
 
 
-def policy_digest(content: str) -> str:
-    return f"sha256-{base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()}"
-
-
 def page_data(sweep: SweepData) -> dict[str, Any]:
+    still = dict.fromkeys(PUSHES, 0.0)
     return {
-        "structure": structure_numbers(sweep.structure) | sweep.pushes,
-        "usual": structure_numbers(Structure()),
+        "structure": floats(sweep.structure.parameters()) | still | sweep.pushes,
+        "usual": floats(Structure().parameters()) | still,
         "ranges": {name: [q.minimum, q.maximum] for name, q in PAGES.items()} | FLAGS,
         "units": {
             name: {"label": quantity.unit.replace(".", " "), **quantity.dimension}
@@ -169,22 +149,17 @@ def page_data(sweep: SweepData) -> dict[str, Any]:
             if quantity.unit != "1"
         },
         "alike": AttractorSettings().alike,
-        "settings": sweep.settings,
-        "directions": sweep.directions,
-        "count": sweep.count,
-        "low": sweep.low,
-        "high": sweep.high,
-        "level": sweep.level,
+        **{name: getattr(sweep, name) for name in SHOWN_OF_SWEEP},
         "tour": {stop.name: stop.link_query for step in TOUR for stop in step.stops},
     }
 
 
-def drive_data(step: float = 0.1) -> dict[str, Any]:
+def drive_data() -> dict[str, Any]:
     """Return what the page's coupled run is (set ``quick``): the loop's structure, its variables,
     start values, and its communication step.
     """
     structure, drive = Structure.from_file("quick"), Drive.from_file("quick")
-    scheme, inputs = Scheme(step / structure.omega), (*FORCE, *MOTOR.inputs)
+    scheme, inputs = Scheme(STEP / structure.omega), (*FORCE, *MOTOR.inputs)
     names = {
         "oscillator": {"inputs": CUBIC, "outputs": OscillatorOutputs._fields},
         "drive": {"inputs": inputs, "outputs": (*BOX, *MOTOR.outputs)},
@@ -202,36 +177,16 @@ def drive_data(step: float = 0.1) -> dict[str, Any]:
         "pair": nonzero_numbers(pair),
         "names": names,
         "columns": (*LEADING, *MOTOR.outputs, *MOTOR.inputs),
-        "oscillator": {
-            name: float(value) for name, value in oscillator_start_values(structure).items()
-        },
-        "drive": {name: float(value) for name, value in drive.parameters().items()},
+        "oscillator": floats(oscillator_start_values(structure)),
+        "drive": floats(drive.parameters()),
         "h": scheme.h,
         "omega": structure.omega,
     }
 
 
-def voltage_slider_values(
-    low: float = 0.8, high: float = 2.0, first: float = 0.9
-) -> dict[str, str]:
-    unit = Drive.from_file("quick").motor_constant * Structure.from_file("quick").omega
-    ends = {"voltage_low": low, "voltage_high": high, "voltage": first}
-    return {name: f"{value * unit:.6g}" for name, value in ends.items()}
-
-
-def structure_numbers(structure: Structure) -> dict[str, float]:
-    numbers = {name: float(value) for name, value in structure.parameters().items()}
-    return numbers | dict.fromkeys(PUSHES, 0.0)
+def floats(numbers: Mapping[str, Any]) -> dict[str, float]:
+    return {name: float(value) for name, value in numbers.items()}
 
 
 def compress_to_base64(content: bytes) -> str:
     return base64.b64encode(zlib.compress(content, 9)).decode()
-
-
-@functools.cache
-def read_page_file(name: str) -> str:
-    return (SOURCES / name).read_text(encoding="utf-8")
-
-
-def read_javascript_modules() -> dict[str, str]:
-    return {path.stem: read_page_file(path.name) for path in sorted(SOURCES.glob("*.js"))}

@@ -25,7 +25,6 @@ from ..units import Units
 
 EXPECTED = "expected a result of orchestrate.sweep along eta or frequency"
 SWEPT = ("eta", "frequency")
-RATIO = ("", "eta")
 SETTINGS = ("transient", "samples", "tolerance")
 READING = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)  # of a file
 OWN = Units("Hz", "mm", "g")  # of a beam of one's own, where nothing else is asked for
@@ -116,7 +115,8 @@ def opens_in_ratios(structure: Structure, units: Units) -> bool:
 
 def check_units(units: Units, level: tuple[str, float]) -> None:
     """Check that a sweep can be shown in some units: one of the paper's motion is in ratios."""
-    if level[0] == "paper" and (units.length or units.acceleration or units.frequency not in RATIO):
+    in_units = units.length or units.acceleration or units.frequency not in ("", "eta")
+    if level[0] == "paper" and in_units:
         raise InputError(
             f"units {units}: the page replays the sweep as it was shaken, by the paper's ratios; "
             "expected eta, or a structure instead of the sweep"

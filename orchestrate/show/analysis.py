@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import groupby
+from itertools import chain, groupby
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,7 +22,6 @@ Results = dict[str, xr.Dataset]  # by label
 Reader = Callable[[xr.Dataset], xr.DataArray]
 CHANNEL_TITLES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 COLOURS = (BLUE, RED, *BESIDES_RED[1:4])
-FRF_OVER = {"1/kg": "force in 1/kg"}  # by the unit of the magnitude
 PHASE = {"ylim": (-280.0, 100.0), "yticks": (-270, -180, -90, 0, 90)}  # an axis in degrees
 
 
@@ -35,14 +34,12 @@ def draw(
 ) -> Figure:
     results = {label: data, **(others or {})}
     kind = data.attrs["analysis"]
-    other = [name for name, result in results.items() if result.attrs["analysis"] != kind]
-    if other:
-        wrong = results[other[0]].attrs["analysis"]
-        raise ValueError(f"others[{other[0]!r}]: result of {wrong}; expected one of {kind}")
+    for name, result in results.items():
+        if (wrong := result.attrs["analysis"]) != kind:
+            raise ValueError(f"others[{name!r}]: result of {wrong}; expected one of {kind}")
     figure = DRAW[kind]({name: in_display_units(result) for name, result in results.items()})
-    set_title(
-        figure, title or convert_accelerations_in(expand_title(str(data.attrs["title"])), data)
-    )
+    words = convert_accelerations_in(expand_title(str(data.attrs["title"])), data)
+    set_title(figure, title or words)
     return figure
 
 
@@ -157,9 +154,7 @@ def draw_frequency_rows(results: Results, rows: Sequence[PanelRow], x_words: str
     for plane, row, values in zip(axes[:: len(names)], rows, shown, strict=True):
         plane.set_ylabel(row.label)
         if row.axis is None:
-            fit_log_axis_to(
-                plane, [array for arrays in values.values() for array in arrays], row.max_decades
-            )
+            fit_log_axis_to(plane, [*chain.from_iterable(values.values())], row.max_decades)
             note_curves_below_axis(plane, values)
         else:
             plane.set(**row.axis)
@@ -170,26 +165,15 @@ def draw_frequency_rows(results: Results, rows: Sequence[PanelRow], x_words: str
 def draw_frf(results: Results) -> Figure:
     """Draw frequency response functions: magnitude (H1), phase and coherence; return the figure."""
 
-    def select_excited(data: xr.Dataset) -> xr.Dataset:
-        return data.sel(estimator="H1").where(data.excited > 0)
+    def excited(name: str) -> Reader:
+        return lambda data: data.sel(estimator="H1").where(data.excited > 0)[name]
 
-    word = FRF_OVER.get(str(first_result(results).magnitude.units), "box")
+    word = "force in 1/kg" if first_result(results).magnitude.units == "1/kg" else "box"
+    phase = excited("phase")
     rows = (
-        PanelRow(
-            f"|H1|, mass over {word}",
-            1.5,
-            lambda data: select_excited(data).magnitude,
-            max_decades=6,
-        ),
-        PanelRow(
-            "phase in degrees",
-            0.9,
-            lambda data: phase_in_degrees(select_excited(data).phase),
-            PHASE,
-        ),
-        PanelRow(
-            "coherence", 0.9, lambda data: select_excited(data).coherence, {"ylim": (-0.03, 1.03)}
-        ),
+        PanelRow(f"|H1|, mass over {word}", 1.5, excited("magnitude"), max_decades=6),
+        PanelRow("phase in degrees", 0.9, lambda data: phase_in_degrees(phase(data)), PHASE),
+        PanelRow("coherence", 0.9, excited("coherence"), {"ylim": (-0.03, 1.03)}),
     )
     return draw_frequency_rows(results, rows, "frequency")
 
@@ -224,18 +208,15 @@ def draw_orders(results: Results) -> Figure:
 
 
 def draw_harmonics(results: Results) -> Figure:
-    words, orders = (
-        "order {:g}\nover order 1 in %",
-        map(float, first_result(results).order.values[:2]),
-    )
+    words, orders = "order {:g}\nover order 1 in %", first_result(results).order.values[:2].tolist()
     rows = [PanelRow("distortion\n(THD) in %", 1.3, lambda data: 100.0 * data.distortion)]
-    rows += [PanelRow(words.format(n), 1.0, order_reader(n, "ratio", 100.0)) for n in orders]
+    rows += [
+        PanelRow(words.format(n), 1.0, order_reader(n, "ratio", 100.0)) for n in map(float, orders)
+    ]
     return draw_frequency_rows(results, rows, "frequency of the excitation")
 
 
-def order_reader(
-    order: float, variable: str, factor: float = 1.0
-) -> Callable[[xr.Dataset], xr.DataArray]:
+def order_reader(order: float, variable: str, factor: float = 1.0) -> Reader:
     """Return a function that takes one order's values, times a factor; NaN where it has none."""
     return lambda data: factor * data.reindex(order=[order]).isel(order=0)[variable]
 

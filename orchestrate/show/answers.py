@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import platform
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+from contextlib import suppress
 from importlib.metadata import PackageNotFoundError, version
 
 from ..errors import InputError
@@ -40,49 +41,35 @@ def title_of(answer: xr.Dataset) -> str:
 
 
 def answer_section(answer: xr.Dataset) -> Section:
-    title = title_of(answer)
-    tables = [table for table in (scalar_table(answer), parameter_table(answer)) if table.rows]
+    title, scalars, parameters = title_of(answer), [], []
+    for key, array in in_display_units(answer).data_vars.items():
+        if not array.dims and array.dtype.kind in "iufb":
+            text = format_number(float(array), str(array.attrs.get("units", "")), 5)
+            meaning = str(array.attrs.get("long_name", ""))
+            scalars.append((str(key), meaning, flag_word(array) or text))
+    for name, quantity in {**STRUCTURE, **EXCITATION}.items():
+        if name in answer.attrs and not isinstance(answer.attrs[name], str):
+            factor, unit = display_scale_of(answer, quantity.unit)
+            value = float(answer.attrs[name]) / factor
+            text = format_number(value, OVER_OMEGA if unit == "eta" else unit, 6)
+            parameters.append((name, quantity.description, text))
+    named = (("name", scalars[:60]), ("parameter", parameters))
+    tables = [Table((head, "what it is", "value"), rows) for head, rows in named if rows]
     try:
         return Section(title, picture=plot(answer), caption=title, tables=tables)
     except InputError:
         return Section(title, tables=tables)
 
 
-def scalar_table(answer: xr.Dataset) -> Table:
-    rows = []
-    for name, array in in_display_units(answer).data_vars.items():
-        if not array.dims and array.dtype.kind in "iufb":
-            value = format_number(float(array), str(array.attrs.get("units", "")), 5)
-            meaning = str(array.attrs.get("long_name", ""))
-            rows.append((str(name), meaning, flag_word(array) or value))
-    return Table(("name", "what it is", "value"), rows[:60])
-
-
-def parameter_table(answer: xr.Dataset) -> Table:
-    rows = []
-    for name, quantity in {**STRUCTURE, **EXCITATION}.items():
-        if name in answer.attrs and not isinstance(answer.attrs[name], str):
-            factor, unit = display_scale_of(answer, quantity.unit)
-            value = float(answer.attrs[name]) / factor
-            shown = OVER_OMEGA if unit == "eta" else unit
-            rows.append((name, quantity.description, format_number(value, shown, 6)))
-    return Table(("parameter", "what it is", "value"), rows)
-
-
 def signs_section(answer: xr.Dataset) -> Section:
     known = [answer.sel(sign=sign) for sign in answer.sign.values]
     known = [one for one in known if bool((one.exceeds >= 0).any())]
-    rows = [
-        (
-            str(one.meaning.values),
-            *(
-                format_values_by_sensor(one[name].values)
-                for name in ("value", "floor", "sound_highest")
-            ),
-            " · ".join(WORDS[int(number)] for number in one.exceeds.values),
-        )
-        for one in known
-    ]
+    rows = []
+    for one in known:
+        sensors = (one[name].values for name in ("value", "floor", "sound_highest"))
+        numbers = (" · ".join(map(format_number, values)) for values in sensors)
+        stands_out = " · ".join(WORDS[int(number)] for number in one.exceeds.values)
+        rows.append((str(one.meaning.values), *numbers, stands_out))
     marked = [number for number, one in enumerate(known) if bool((one.exceeds == 1).any())]
     columns = ("sign", "value", "by noise", "sound structure", "stands out")
     moved = [MOVED.format(known[number]) for number in marked]
@@ -99,42 +86,29 @@ def signs_section(answer: xr.Dataset) -> Section:
     return Section("Signs that need no model", [text], moved, plot(answer), caption, [table])
 
 
-def format_values_by_sensor(values: Iterable[float]) -> str:
-    return " · ".join(format_number(float(value)) for value in values)
-
-
 def origin_section(answers: Sequence[xr.Dataset]) -> Section:
     rows: list[tuple[str, str]] = []
     for number, answer in enumerate(answers, 1):
+        known = {str(name): str(text) for name, text in answer.attrs.items()}
+        texts = [(label, known[name]) for name, label in ORIGIN.items() if known.get(name)]
+        if "history" in known:
+            texts.append(("computed on", known["history"].partition(": ")[0]))
+        if "call" in known and known.get("analysis") not in BY_RECORD:
+            texts.append(("what was asked", known["call"]))
+        for name in sorted(known):
+            if name.startswith("fmu_guid"):
+                model = known.get(name.replace("guid", "model"), "")
+                texts.append((f"FMU {model}".rstrip(), known[name]))
+        if "identity" in known:
+            digest = hashlib.sha256(known["identity"].encode()).hexdigest()[:16]
+            texts.append(("identity of question, FMU and code", digest))
         begin = f"{number}. " if len(answers) > 1 else ""
-        rows += [(begin + name, text) for name, text in describe_origin(answer)]
-    found = {name: installed_version(name) for name in PACKAGES}
-    versions = [f"{name} {number}" for name, number in found.items() if number]
-    rows.append(("versions", ", ".join([f"Python {platform.python_version()}", *versions])))
+        for label, text in texts:
+            rows.append((begin + label, text[:LONGEST] + " ..." * (len(text) > LONGEST)))
+    versions = [f"Python {platform.python_version()}"]
+    for name in PACKAGES:
+        with suppress(PackageNotFoundError):
+            versions.append(f"{name} {version(name)}")
+    rows.append(("versions", ", ".join(versions)))
     table = Table(("what", "value"), rows)
     return Section("Where it comes from", tables=[table], place="appendix")
-
-
-def describe_origin(answer: xr.Dataset) -> list[tuple[str, str]]:
-    attributes = {str(name): str(text) for name, text in answer.attrs.items()}
-    rows = [(label, attributes[name]) for name, label in ORIGIN.items() if attributes.get(name)]
-    if "history" in attributes:
-        rows.append(("computed on", attributes["history"].partition(": ")[0]))
-    if "call" in attributes and attributes.get("analysis") not in BY_RECORD:
-        rows.append(("what was asked", attributes["call"]))
-    for name in sorted(attributes):
-        if name.startswith("fmu_guid"):
-            model = attributes.get(name.replace("guid", "model"), "")
-            rows.append((f"FMU {model}".rstrip(), attributes[name]))
-    if "identity" in attributes:
-        digest = hashlib.sha256(attributes["identity"].encode()).hexdigest()[:16]
-        rows.append(("identity of question, FMU and code", digest))
-    cut = {name: f"{text[:LONGEST]} ..." for name, text in rows if len(text) > LONGEST}
-    return [(name, cut.get(name, text)) for name, text in rows]
-
-
-def installed_version(name: str) -> str:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return ""

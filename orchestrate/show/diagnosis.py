@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..units import in_display_units
@@ -22,6 +21,8 @@ SENSOR_TITLES = {"acceleration1": "sensor 1", "acceleration2": "sensor 2", "moto
 FITS = (BLUE, ORANGE, GREEN)  # of the delaminated, of the best sound structure, of the bonded one
 PARTED, BONDED = "delaminated", "bonded"  # names of hypotheses begin so
 FEWEST_DECADES = (0.2, 10.0)  # of the signs' axis, at least
+AT_BAR: Any = {"xytext": (3, 0), "textcoords": "offset points", "va": "center"}
+AT_BAR |= {"fontsize": 7, "zorder": 4}
 
 
 @draws("signs")
@@ -42,7 +43,12 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
         values, label = ratio.sel(channel=channel).values, SENSOR_TITLES.get(channel, channel)
         colour = BESIDES_RED[number % len(BESIDES_RED)]
         axes.barh(positions, np.nan_to_num(values), share, color=colour, label=label)
-        write_values_at_bars(axes, positions, values, data.value.sel(channel=channel).values, limit)
+        own = data.value.sel(channel=channel).values
+        for y, length, value in zip(positions, values, own, strict=True):
+            there = np.isfinite(length)
+            text, shade = (f"{value:.3g}", BLACK) if there else ("not in this record", GREY)
+            x = float(length) if there and length > limit else limit  # lines are left of it
+            axes.annotate(text, (x, y), color=shade, **AT_BAR)
     lines: Any = {"linewidth": 1.0, "zorder": 3}
     axes.axvline(1.0, color=GREY, label="noise and a sound structure", **lines)
     axes.axvline(limit, color=RED, linestyle="--", label="from here it stands out", **lines)
@@ -55,19 +61,6 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     lacking = textwrap.fill(f"not in this record: {', '.join(left_out)}", 100)
     add_figure_legend(figure, [axes], 4, title=lacking if left_out else None)
     return figure
-
-
-def write_values_at_bars(
-    axes: Axes, y: np.ndarray, ratios: np.ndarray, values: np.ndarray, min_x: float
-) -> None:
-    """Write each sign's own value at the end of its bar, or that the record lacks it."""
-    for height, ratio, value in zip(y, ratios, values, strict=True):
-        known = np.isfinite(ratio)
-        text = f"{value:.3g}" if known else "not in this record"
-        x = float(ratio) if known and ratio > min_x else min_x  # lines are left of it
-        offset: Any = {"xytext": (3, 0), "textcoords": "offset points", "zorder": 4}
-        colour = BLACK if known else GREY
-        axes.annotate(text, (x, height), va="center", fontsize=7, color=colour, **offset)
 
 
 @draws("plan_test")
@@ -113,7 +106,7 @@ def draw_orders_and_fits(data: xr.Dataset, title: str = "") -> Figure:
             draw_line(plane, at.frequency, at.floor, "-", GREY, 0.8, "floor")
             curves["floor"] = at.floor.values
         for number, name in enumerate(shown):
-            line: Any = {"color": FITS[number % len(FITS)], "zorder": 3.0 - 0.1 * number}
+            line: Any = {"color": FITS[number], "zorder": 3.0 - 0.1 * number}
             plane.plot(at.frequency, curves[name], linewidth=1.1, label=name, **line)
         plane.set_yscale("log")
         known = at.measured.values[at.measured.values > 0.0]
@@ -151,13 +144,13 @@ def names_of_best_fits(data: xr.Dataset) -> list[str]:
 
 
 @styled
-def draw_misfit(data: xr.Dataset, title: str = "") -> Figure:
-    figure, (axes,) = make_panels(1, 1, (8.0, 3.4), title or str(data.attrs.get("title", "")))
+def draw_misfit(data: xr.Dataset) -> Figure:
+    figure, (axes,) = make_panels(1, 1, (8.0, 3.4))
     data = in_display_units(data)
-    for number, name in enumerate(names_of_best_fits(data)):
+    for colour, name in zip(FITS, names_of_best_fits(data), strict=False):
         one = data.sel(hypothesis=name)
         words = f"{name}: {float(one.misfit):.3g}"
-        draw_line(axes, one.frequency, one.misfit_at, "-", FITS[number % len(FITS)], 1.0, words)
+        draw_line(axes, one.frequency, one.misfit_at, "-", colour, 1.0, words)
     axes.axhline(1.0, color=GREY, linewidth=0.8)
     set_plain_log_scale(axes)
     across = label_with_unit("frequency of the excitation", data.frequency)

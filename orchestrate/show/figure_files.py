@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,16 +22,25 @@ UNDATED: dict[str, dict[str, Any]] = {  # the same figure is the same bytes, tod
 }
 
 
+def save(
+    figure: Figure, path: str | Path, formats: Iterable[str] = ("png",), **options: Any
+) -> list[Path]:
+    written = []
+    for ending in formats:
+        write = partial(write_figure, figure, ending=ending, **options)
+        written.append(write_atomically(f"{path}.{ending}", write))
+    return written
+
+
 def png_bytes(figure: Figure) -> bytes:
     file = io.BytesIO()
-    with style_context():
-        figure.savefig(file, format="png", metadata=UNDATED["png"])
+    write_figure(figure, file, "png")
     return file.getvalue()
 
 
-def png_size(png: bytes) -> dict[str, int]:
-    width, height = (int.from_bytes(png[start : start + 4], "big") for start in (16, 20))
-    return {"width": width, "height": height}
+def write_figure(figure: Figure, file: Path | io.BytesIO, ending: str, **options: Any) -> None:
+    with style_context():
+        figure.savefig(file, format=ending, metadata=UNDATED.get(ending), **options)
 
 
 def parse_slide_shape(size: str) -> tuple[float, float] | None:
@@ -54,19 +64,3 @@ def resize_for_slide(figure: Figure, shape: tuple[float, float] | None) -> Figur
     set_title(figure, figure.get_suptitle().replace("\n", " "))
     figure.set_dpi(SLIDE_PIXELS / width)
     return figure
-
-
-def save(
-    figure: Figure, path: str | Path, formats: Iterable[str] = ("png",), **options: Any
-) -> list[Path]:
-    written = []
-    for ending in formats:
-        target = Path(f"{path}.{ending}")
-
-        def write(temporary: Path, ending: str = ending) -> None:
-            with style_context():
-                figure.savefig(temporary, format=ending, metadata=UNDATED.get(ending), **options)
-
-        write_atomically(target, write)
-        written.append(target)
-    return written

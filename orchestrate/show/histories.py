@@ -130,18 +130,15 @@ def draw_acceleration_spectra(
 @styled
 def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
     words = str(data.attrs.get("excitation_description") or data.attrs["excitation"])
-    title = (
-        title
-        or f"{labels.convert_accelerations_in(words, data)}; {labels.title_from_attributes(data)}"
-    )
+    excitation = labels.convert_accelerations_in(words, data)
+    title = title or f"{excitation}; {labels.title_from_attributes(data)}"
     heights: Any = {"sharex": True, "height_ratios": (1.0, 1.6, 1.2, 1.2)}
     figure, (box, masses, gap, impacts) = make_panels(4, 1, (10.4, 7.2), title, **heights)
     scale, unit = acceleration_scale(data)
     draw_excitation(box, data)
     draw_gap_and_impacts(data, gap, impacts)
-    for number, colour in (("1", BLUE), ("2", RED)):
-        style: Any = {"color": colour, "label": f"mass {number}", "alpha": 0.55}
-        draw_signal(masses, data, f"a{number}_abs", scale, **style)
+    for i, colour in ((1, BLUE), (2, RED)):
+        draw_signal(masses, data, f"a{i}_abs", scale, color=colour, label=f"mass {i}", alpha=0.55)
     if bonded is not None:
         time, low, high = signal_envelope(bonded.time.values, bonded.a1_abs.values / scale)
         draw_line(masses, time, high, "-", BLACK, 0.9, "both, bonded")

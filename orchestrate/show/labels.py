@@ -82,11 +82,9 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
     values = {name: known[name] for name in ("e", "gamma") if name in known} | values
     left_out = {name for name, value in USUAL_VALUES.items() if values.get(name) == value} | shown
     left_out |= {"D", "D1", "D2"} if "D" in shown else set()
-    order = [
-        name for name in ("e", *TITLE_RATIOS, "gamma") if name in values and name not in left_out
-    ]
+    named = (name for name in ("e", *TITLE_RATIOS, "gamma") if name in values)
     texts = [format_halves(known) if by_halves else ""]
-    texts.append(format_parameters({name: values[name] for name in order}))
+    texts.append(format_parameters({name: values[name] for name in named if name not in left_out}))
     bonded = bool(known.get("bonded"))
     added = [] if bonded else [name for name in ADDED if known.get(name) and name not in shown]
     texts += [format_added_parameter(name, known[name], data) for name in added]
@@ -101,7 +99,11 @@ def branch_title(data: xr.Dataset, over: Iterable[str]) -> str:
     points = {key: data[key] for key in (name, "amplitude") if key in data.coords}
     if {"frequency", "amplitude"} <= set(points):
         points["level"] = points["amplitude"] * points["frequency"] ** 2
-    constant = {key: float(values[0]) for key, values in points.items() if is_constant(values)}
+    constant = {
+        key: float(values[0])
+        for key, values in points.items()
+        if values.ndim == 1 and np.allclose(values, values[0], rtol=1e-9, atol=0.0)
+    }
     if "amplitude" in constant:
         constant.pop("level", None)
     texts = excitation_texts(data, constant).items()
@@ -113,10 +115,6 @@ def has_frequency_unit(data: xr.Dataset) -> bool:
     if display_units_of(data).frequency:
         return display_units_of(data).frequency != "eta"
     return is_in_si(data) or "frequency" in data.dims
-
-
-def is_constant(values: xr.DataArray) -> bool:
-    return values.ndim == 1 and bool(np.allclose(values, values[0], rtol=1e-9, atol=0.0))
 
 
 def gap_name(data: xr.Dataset) -> str:
@@ -148,9 +146,8 @@ def format_length(data: xr.Dataset, length: float) -> str:
 
 def format_frequency(data: xr.Dataset, frequency: float) -> str:
     """Format a frequency given in rad/s in a dataset's display unit, by default Hz."""
-    factor, word = (
-        display_scale_of(data, "rad/s") if display_units_of(data).frequency else (TURN, "Hz")
-    )
+    asked = display_units_of(data).frequency
+    factor, word = display_scale_of(data, "rad/s") if asked else (TURN, "Hz")
     if word == "eta":
         return format_parameters({"eta": float(f"{frequency / factor:.5g}")})
     letter = r"$\Omega$" if word == "rad/s" else r"$\Omega/2\pi$"
@@ -160,25 +157,23 @@ def format_frequency(data: xr.Dataset, frequency: float) -> str:
 def excitation_texts(data: xr.Dataset, parameters: Mapping[str, float]) -> dict[str, str]:
     units, texts = display_units_of(data), {}
     if "eta" in parameters:
-        omega = omega_of(data)
+        eta, omega = parameters["eta"], omega_of(data)
         by_unit = units.frequency not in ("", "eta") and math.isfinite(omega)
-        eta = parameters["eta"]
-        words = format_frequency(data, eta * omega) if by_unit else format_parameters({"eta": eta})
-        texts["eta"] = words
+        in_unit = format_frequency(data, eta * omega) if by_unit else ""
+        texts["eta"] = in_unit or format_parameters({"eta": eta})
     if parameters.get("frequency"):  # 0 where nothing is harmonic
         texts["frequency"] = format_frequency(data, parameters["frequency"])
     if "amplitude" in parameters and units.acceleration and "frequency" in parameters:
-        texts["amplitude"] = format_level(
-            data, parameters["amplitude"] * parameters["frequency"] ** 2
-        )
+        level = parameters["amplitude"] * parameters["frequency"] ** 2
+        texts["amplitude"] = format_level(data, level)
     elif parameters.get("amplitude") and not is_paper_amplitude(data, parameters):
         texts["amplitude"] = f"$a$ = {format_length(data, parameters['amplitude'])}"
     elif "level" in parameters:
         texts["level"] = format_level(data, parameters["level"])
     elif "frequency" in data.dims and "amplitude" in data.coords:
-        level = (data.amplitude * data.frequency**2).values
-        if math.isclose(level.min(), level.max(), rel_tol=1e-9):
-            texts["amplitude"] = format_level(data, level.max())
+        levels = (data.amplitude * data.frequency**2).values
+        if math.isclose(levels.min(), levels.max(), rel_tol=1e-9):
+            texts["amplitude"] = format_level(data, levels.max())
     loads = {name: parameters[name] for name in LOADS if parameters.get(name)}
     return texts | {name: LOADS[name].format(value) for name, value in loads.items()}
 
@@ -186,9 +181,8 @@ def excitation_texts(data: xr.Dataset, parameters: Mapping[str, float]) -> dict[
 def is_paper_amplitude(data: xr.Dataset, parameters: Mapping[str, float]) -> bool:
     """Return whether the amplitude is 1/eta^2 m, so that displacements are the paper's ratios."""
     eta = parameters.get("eta", parameters.get("frequency", math.nan) / omega_of(data))
-    return shows_lengths_as_ratios(data) and math.isclose(
-        parameters["amplitude"] * eta**2, 1.0, rel_tol=1e-9
-    )
+    of_paper = math.isclose(parameters["amplitude"] * eta**2, 1.0, rel_tol=1e-9)
+    return of_paper and shows_lengths_as_ratios(data)
 
 
 def format_level(data: xr.Dataset, level: float) -> str:

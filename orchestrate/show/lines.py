@@ -21,7 +21,7 @@ from . import style
 from .colours import BESIDES_RED, BLACK, BLUE, DIRECTIONS, GREY, RED, STRUCTURES
 from .kinds import BRANCHES, MORE, draws
 from .labels import branch_title, format_voltage, orbit_label, title_from_attributes
-from .overlay import Overlay, draw_bifurcations, draw_orbits, length_factors
+from .overlay import DrawnBranch, place_over_responses
 from .scales import (
     axis_values,
     displayed_gaps,
@@ -32,6 +32,7 @@ from .scales import (
 from .style import add_figure_legend, draw_line, make_panels, styled
 
 MAX_DISTINCT = 600  # values along an axis at which marks can be distinguished
+DECADES = 6  # of a logarithmic axis of gaps, at most
 CELLS = (1500, 750)  # of a panel, for samples that lie on each other
 SHADES = ((1, 0.35), (3, 0.6), (8, 1.0))  # from this number of samples in a cell on: opacity
 VERDICTS = {1: (RED, "o"), 0: (BLUE, "s"), -1: (BLACK, ".")}  # chaotic, neutral, periodic
@@ -59,20 +60,6 @@ def marker_keywords(count: int, marks: MarkStyle) -> dict[str, Any]:
     return {**style, "marker": "o", "markersize": size, "markerfacecolor": "none"}
 
 
-def choose_one_sample_per_cell(
-    axes: Axes, x: np.ndarray, samples: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return one sample's index per occupied cell of a panel, and the samples in each cell."""
-    columns, rows = CELLS
-    column = cell_index(axes.xaxis, x, columns)
-    row = cell_index(axes.yaxis, samples, rows)
-    cell = (column[:, None] * rows + row).ravel()
-    last = np.full(columns * rows, -1)
-    last[cell] = np.arange(len(cell))
-    chosen = last[last >= 0]
-    return chosen, np.bincount(cell, minlength=columns * rows)[last >= 0]
-
-
 def cell_index(axis: Axis, values: np.ndarray, count: int) -> np.ndarray:
     """Return in which of ``count`` equal parts of an axis each value lies."""
     change = axis.get_transform().transform
@@ -90,7 +77,12 @@ def draw_samples(
     if len(x) <= MAX_DISTINCT:
         axes.plot(np.repeat(x, each), gaps, **style, alpha=0.8, label=label)
         return
-    chosen, count = choose_one_sample_per_cell(axes, x, samples)
+    columns, rows = CELLS
+    column, row = cell_index(axes.xaxis, x, columns), cell_index(axes.yaxis, samples, rows)
+    cell = (column[:, None] * rows + row).ravel()
+    # one sample of each occupied cell of the panel, and how many lie there
+    _, from_end, count = np.unique(cell[::-1], return_index=True, return_counts=True)
+    chosen = len(cell) - 1 - from_end
     ends = [*(minimum for minimum, _ in SHADES[1:]), np.inf]
     for (minimum, opacity), end in zip(SHADES, ends, strict=True):
         of_shade = chosen[(count >= minimum) & (count < end)]
@@ -99,15 +91,12 @@ def draw_samples(
     axes.plot([], [], **size, label=label)
 
 
-def draw_steps(
-    axes: Axes, x: np.ndarray, values: np.ndarray, colour: str, width: float = 1.0, **more: Any
-) -> None:
+def draw_steps(axes: Axes, x: np.ndarray, values: np.ndarray, colour: str, width: float) -> None:
     """Draw a piecewise constant quantity as steps, with marks where values are few."""
     order = np.argsort(x, kind="stable")
-    axes.plot(x[order], values[order], color=colour, linewidth=width, drawstyle="steps-mid", **more)
+    axes.plot(x[order], values[order], color=colour, linewidth=width, drawstyle="steps-mid")
     if len(x) <= MAX_DISTINCT:
-        more = {**more, "label": None}
-        axes.plot(x, values, **marker_keywords(len(x), MarkStyle(colour, 0.7)), **more)
+        axes.plot(x, values, **marker_keywords(len(x), MarkStyle(colour, 0.7)))
 
 
 DIRECTION_MARKS = {  # down lies on up
@@ -122,11 +111,9 @@ def draw_sweep(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] 
     """Draw an orbit diagram with all samples (Figures 6, 10, 11), and the impacts below it."""
     figure, (top, bottom) = make_panels(2, 1, (9.6, 6.4), sharex=True, height_ratios=(3, 1))
     parameter = varied_dimension(data.impacts_per_period)
-    branches = [Overlay(branch, data, parameter) for branch in overlay]
-    (shown, label), (factor, _) = (
-        displayed_gaps(data, data.xi_rel),
-        gap_scale_and_label(data, data.xi_rel),
-    )
+    branches = [place_over_responses(branch, data, parameter) for branch in overlay]
+    shown, label = displayed_gaps(data, data.xi_rel)
+    factor, _ = gap_scale_and_label(data, data.xi_rel)
     x, name = axis_values(data, parameter)
     low, high = float(x.min()), float(x.max())
     bottom.set_xlim((low, high) if high > low else (low - 0.5, high + 0.5))
@@ -156,14 +143,14 @@ def draw_sweep(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] 
     return figure
 
 
-def set_gap_axis_scale(axes: Axes, samples: np.ndarray, decades: int = 6) -> None:
+def set_gap_axis_scale(axes: Axes, samples: np.ndarray) -> None:
     """Set a logarithmic gap axis that is linear near 0, so that 0 is on it."""
     largest = float(samples.max(initial=0.0))
     if largest <= 0.0:
         axes.set_ylim(-0.05, 1.0)
         return
     minimum = float(samples.min())
-    linear = 10.0 ** np.floor(np.log10(largest) - decades)
+    linear = 10.0 ** np.floor(np.log10(largest) - DECADES)
     if minimum > linear:
         axes.set_yscale("log")
         axes.set_ylim(minimum / 1.5, largest * 1.5)
@@ -197,21 +184,18 @@ def draw_branch(*branches: xr.Dataset, title: str = "") -> Figure:
     name = str(branches[0].attrs["over"])
     figure, (plane,) = make_panels(1, 1, (9.6, 5.8), title or branch_title(branches[0], [name]))
     factor, gap = gap_scale_and_label(branches[0], branches[0].xi_rel)
-    scales = [length_factors(branch, factor) for branch in branches]
-    samples = [branch.xi_rel.transpose("sample", "point").values for branch in branches]
-    gaps = [np.ravel(rows * scale) for rows, scale in zip(samples, scales, strict=True)]
-    set_gap_axis_scale(plane, np.concatenate(gaps))
     unit, label = parameter_scale_and_label(branches[0], name)
+    drawn = [DrawnBranch(branch, unit) for branch in branches]
+    gaps = [branch.gaps_at_phase_0(factor).ravel() for branch in drawn]
+    set_gap_axis_scale(plane, np.concatenate(gaps))
     at = np.concatenate([branch[name].values for branch in branches]) / unit
     low, high = float(at.min()), float(at.max())
     edge = 0.01 * (high - low)  # room for markers at the ends
     words = f"{gap}, at $t = nT$" if factor else rf"{style.XI_REL}$(nT)$"
     plane.set(xlabel=label, ylabel=words, xlim=(low - edge, high + edge))
-    for branch, scale in zip(branches, scales, strict=True):
-        draw_orbits(plane, branch, branch[name].values / unit, "xi_rel", scale)
-        if branch.sizes.get("bifurcation"):
-            at = branch.bifurcation_value.values / unit
-            draw_bifurcations(plane, branch, at, "xi_rel", scale)
+    for one in drawn:
+        one.draw_orbits(plane, "xi_rel", factor)
+        one.draw_bifurcations(plane, "xi_rel", factor)
     add_figure_legend(figure, [plane], columns=8)
     return figure
 
@@ -224,30 +208,26 @@ def draw_lyapunov(*cases: xr.Dataset, title: str = "") -> Figure:
     minimum = min(float(data.exponent.min()) for data in cases)
     lowest = min(max(1.2 * minimum, -0.1), -0.01)
     axes[0].set_ylim(lowest, max(0.05, *(1.2 * float(data.exponent.max()) for data in cases)))
-    names = (*([title] if title else map(title_from_attributes, cases)),)
-    for plane, data, words in zip(axes, cases, names, strict=True):
-        draw_exponents(plane, data, lowest)
+    titles = [title] if title else map(title_from_attributes, cases)
+    for plane, data, words in zip(axes, cases, titles, strict=True):
+        names = flag_words(data.verdict.attrs)
+        x, label = axis_values(data, varied_dimension(data.exponent))
+        size = float(np.clip(1000.0 / len(x), 2.0, 4.0))
+        for verdict, (colour, shape) in VERDICTS.items():
+            of = data.verdict.values == verdict
+            exponent, error = data.exponent.values[of], data.standard_error.values[of]
+            marks: Any = {"fmt": shape, "color": colour, "markersize": size, "linewidth": 0.7}
+            plane.errorbar(x[of], exponent, yerr=error, label=names[verdict], **marks)
+        below = data.exponent.values < lowest
+        if below.any():
+            edge = plane.get_xaxis_transform()
+            marks = {"color": BLACK, "markersize": 4, "label": f"periodic, below {lowest:.2g}"}
+            plane.plot(x[below], np.full(below.sum(), 0.02), "v", transform=edge, **marks)
         plane.axhline(0.0, color="0.5", linewidth=0.8)
         plane.set(ylabel=r"$\lambda$ per unit of $\tau$", title=words)
-    axes[-1].set_xlabel(axis_values(cases[-1], varied_dimension(cases[-1].exponent)).label)
+    axes[-1].set_xlabel(label)
     add_figure_legend(figure, axes, 6, title="bars: one standard error")
     return figure
-
-
-def draw_exponents(axes: Axes, data: xr.Dataset, lowest: float) -> None:
-    names, parameter = flag_words(data.verdict.attrs), varied_dimension(data.exponent)
-    x = axis_values(data, parameter).values
-    size = float(np.clip(1000.0 / len(x), 2.0, 4.0))
-    for verdict, (colour, shape) in VERDICTS.items():
-        of_verdict = data.verdict.values == verdict
-        exponent, error = data.exponent.values[of_verdict], data.standard_error.values[of_verdict]
-        marks: Any = {"fmt": shape, "color": colour, "markersize": size, "linewidth": 0.7}
-        axes.errorbar(x[of_verdict], exponent, yerr=error, label=names[verdict], **marks)
-    below = data.exponent.values < lowest
-    if below.any():
-        edge = axes.get_xaxis_transform()
-        marks = {"color": BLACK, "markersize": 4, "label": f"periodic, below {lowest:.2g}"}
-        axes.plot(x[below], np.full(below.sum(), 0.02), "v", transform=edge, **marks)
 
 
 @draws("attractors")

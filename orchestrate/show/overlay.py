@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,6 @@ MOVED = {  # by a parameter that is not in SI
     **{"D": {"d1", "d2"}, "D1": {"d1"}, "D2": {"d2"}, "zeta1": {"d1"}, "zeta2": {"d2"}},
     **{"f1": {"k1", "d1"}, "f2": {"k2", "d2"}},
 }
-PAIR = (BLUE, RED)  # colours of stable and unstable orbits
 ALIKE = ({"eta", "frequency"}, {"level", "amplitude"})  # names of what is one axis
 
 
@@ -77,7 +77,7 @@ def explain_excitation_mismatch(branch: xr.Dataset, data: xr.Dataset, over: str)
     at = branch.frequency.values
     if over not in ALIKE[0]:
         pairs = ((branch[key].values, data[key].values) for key in ("eta", "frequency"))
-        if not any(are_all_equal(*pair) for pair in pairs):
+        if not any(np.allclose(np.append(a, b), a[0], rtol=SAME, atol=0.0) for a, b in pairs):
             eta = [float(each.eta.values[0]) for each in (branch, data)]
             return f"a branch at eta = {eta[0]:g}; expected eta = {eta[1]:g}"
     has_scale = any(branch.attrs.get(name) for name in OF_LENGTH)
@@ -91,11 +91,6 @@ def explain_excitation_mismatch(branch: xr.Dataset, data: xr.Dataset, over: str)
     return ""
 
 
-def are_all_equal(first: np.ndarray, second: np.ndarray) -> bool:
-    """Return whether all elements of both arrays are one number, apart from rounding."""
-    return np.allclose(np.append(first, second), first[0], rtol=SAME, atol=0.0)
-
-
 def amplitude_at(data: xr.Dataset, frequency: np.ndarray) -> np.ndarray:
     """Return the box's amplitude, m, interpolated to frequencies between the responses'."""
     order = np.argsort(data.frequency.values, kind="stable")
@@ -107,98 +102,78 @@ def amplitude_at(data: xr.Dataset, frequency: np.ndarray) -> np.ndarray:
     return np.interp(frequency, own, amplitude)
 
 
-class Overlay:
-    """A branch with the units of the responses over which it is drawn."""
+def place_over_responses(branch: xr.Dataset, data: xr.Dataset, parameter: str) -> DrawnBranch:
+    """Return a branch in the units of responses along a parameter, over which it is drawn."""
+    parameters = {key: data.attrs[key] for key in SI if key in data.attrs}
+    if "structure" in data.dims:  # of both
+        parameters.pop("bonded", None)
+    why = explain_branch_mismatch(branch, parameter, parameters)
+    why = why or explain_excitation_mismatch(branch, data, parameter)
+    if why:
+        raise InputError(f"overlay: {why}")
+    name, omega = str(branch.attrs["over"]), omega_of(branch)
+    if name in ALIKE[0]:
+        on_ratios = axis_values(data, parameter).label == ETA
+        unit = omega if on_ratios else frequency_scale(data)[0]
+        unit /= omega if name == "eta" else 1.0
+    elif parameter == "level":
+        unit = acceleration_scale(data, "g")[0] / float(branch.frequency[0]) ** 2
+    else:
+        unit = parameter_scale_and_label(data, parameter)[0]
+    own = parameter in ALIKE[1]
+    amplitude = None if own else amplitude_at(data, branch.frequency.values)
+    return DrawnBranch(branch, unit, amplitude)
 
-    def __init__(self, branch: xr.Dataset, data: xr.Dataset, parameter: str) -> None:
-        parameters = {key: data.attrs[key] for key in SI if key in data.attrs}
-        if "structure" in data.dims:  # of both
-            parameters.pop("bonded", None)
-        why = explain_branch_mismatch(branch, parameter, parameters)
-        why = why or explain_excitation_mismatch(branch, data, parameter)
-        if why:
-            raise InputError(f"overlay: {why}")
-        self.branch, self.data, self.parameter = branch, data, parameter
 
-    def in_axis_units(self, values: xr.DataArray) -> np.ndarray:
-        """Return values of the branch's parameter in the units of the responses' axis."""
-        name, numbers = str(self.branch.attrs["over"]), values.values
-        if name in ALIKE[0]:
-            omega = omega_of(self.branch)
-            frequency = numbers * omega if name == "eta" else numbers
-            on_ratios = axis_values(self.data, self.parameter).label == ETA
-            return np.asarray(frequency / (omega if on_ratios else frequency_scale(self.data)[0]))
-        if self.parameter == "level":
-            accelerations = numbers * self.branch.frequency.values[0] ** 2
-            return np.asarray(accelerations / acceleration_scale(self.data, "g")[0])
-        return np.asarray(numbers / parameter_scale_and_label(self.data, self.parameter)[0])
+@dataclass(frozen=True)
+class DrawnBranch:
+    """A branch of orbits in the units of a picture's axes."""
+
+    branch: xr.Dataset
+    x_unit: float  # what is one on the axis of its parameter
+    amplitude: np.ndarray | None = None  # of the box at its points, m, if it is not its own
 
     def length_factors(self, unit: float) -> np.ndarray:
-        """Return factors from lengths over a eta^2 to the axis' unit, m, one per branch point."""
-        own = self.parameter in ALIKE[1]
-        amplitude = None if own else amplitude_at(self.data, self.branch.frequency.values)
-        return length_factors(self.branch, unit, amplitude)
-
-    def draw_orbits(
-        self, plane: Axes, name: str, unit: float, colours: tuple[str, str] = PAIR
-    ) -> None:
-        """Draw a length of the orbits, such as ``xi_rel``, as lines; ``unit``: the axis'."""
-        x = self.in_axis_units(self.branch[str(self.branch.attrs["over"])])
-        draw_orbits(plane, self.branch, x, name, self.length_factors(unit), colours)
-
-    def draw_bifurcations(self, plane: Axes, name: str, unit: float) -> None:
-        """Draw the branch's bifurcations at a length of the orbits; ``unit``: the axis'."""
-        if self.branch.sizes.get("bifurcation"):
-            x = self.in_axis_units(self.branch.bifurcation_value)
-            draw_bifurcations(plane, self.branch, x, name, self.length_factors(unit))
+        """Return each point's factor from lengths over a eta^2 to a unit, m; 1 for unit 0."""
+        count = self.branch.sizes["point"]
+        if not unit:
+            return np.ones(count)
+        if self.amplitude is None or not self.amplitude.any():
+            return np.broadcast_to(np.asarray(unit_of_xi(self.branch)), count) / unit
+        return np.asarray(self.amplitude * self.branch.eta.values**2 / unit)
 
     def gaps_at_phase_0(self, unit: float) -> np.ndarray:
-        """Return the branch's gaps at phase 0 in the unit of an axis; ratios for unit 0."""
         samples = self.branch.xi_rel.transpose("sample", "point").values
         return np.asarray(samples * self.length_factors(unit))
 
+    def draw_orbits(
+        self, plane: Axes, name: str, unit: float, colours: tuple[str, str] = (BLUE, RED)
+    ) -> None:
+        """Draw a length of the orbits, such as ``xi_rel``: solid if stable, dashed if unstable."""
+        x = self.branch[str(self.branch.attrs["over"])].values / self.x_unit
+        stable = self.branch.stable.values == 1
+        # a step of which one end is unstable is drawn as unstable
+        both = stable & np.append(stable[1:], True) & np.append(True, stable[:-1])
+        lengths = self.branch[name].transpose(..., "point").values * self.length_factors(unit)
+        for row in np.atleast_2d(lengths):
+            for label, shown, style, colour, width in (
+                ("stable", stable, "-", colours[0], 1.2),
+                ("unstable", ~both, "--", colours[1], 0.9),
+            ):
+                values = np.where(shown, row, np.nan)
+                draw_line(plane, x, values, style, colour, width, label if shown.any() else None)
 
-def length_factors(
-    branch: xr.Dataset, unit: float, amplitude: np.ndarray | None = None
-) -> np.ndarray:
-    """Return each point's factor from lengths over a eta^2 to a unit, m; 1 for unit 0: ratios."""
-    if not unit:
-        return np.ones(branch.sizes["point"])
-    if amplitude is None or not amplitude.any():
-        return np.broadcast_to(np.asarray(unit_of_xi(branch)), branch.sizes["point"]) / unit
-    return np.asarray(amplitude * branch.eta.values**2 / unit)
-
-
-def draw_orbits(
-    plane: Axes,
-    branch: xr.Dataset,
-    x: np.ndarray,
-    name: str,
-    scale: np.ndarray,
-    colours: tuple[str, str] = PAIR,
-) -> None:
-    """Draw a length of a branch's orbits as lines: solid where stable, dashed where unstable."""
-    stable = branch.stable.values == 1
-    # a step of which one end is unstable is drawn as unstable
-    both = stable & np.append(stable[1:], True) & np.append(True, stable[:-1])
-    for row in np.atleast_2d(branch[name].transpose(..., "point").values * scale):
-        for label, shown, style, colour, width in (
-            ("stable", stable, "-", colours[0], 1.2),
-            ("unstable", ~both, "--", colours[1], 0.9),
-        ):
-            values = np.where(shown, row, np.nan)
-            draw_line(plane, x, values, style, colour, width, label if shown.any() else None)
-
-
-def draw_bifurcations(
-    plane: Axes, branch: xr.Dataset, x: np.ndarray, name: str, scale: np.ndarray
-) -> None:
-    names = flag_words(branch.bifurcation_kind.attrs)
-    there = np.interp(branch.bifurcation_place.values, np.arange(len(scale)), scale)
-    values = branch[f"bifurcation_{name}"].transpose("bifurcation", ...).values
-    rows = values.reshape(len(there), -1) * there[:, np.newaxis]
-    style: Any = {"color": "black", "markerfacecolor": "white", "markersize": 5, "zorder": 3}
-    for at, row, kind in zip(x, rows, branch.bifurcation_kind.values, strict=True):
-        word = names[int(kind)].replace("Neimark Sacker", "Neimark-Sacker")
-        place = np.full(len(row), at)
-        plane.plot(place, row, BIFURCATION_MARKS[word], linestyle="none", label=word, **style)
+    def draw_bifurcations(self, plane: Axes, name: str, unit: float) -> None:
+        branch, scale = self.branch, self.length_factors(unit)
+        if not branch.sizes.get("bifurcation"):
+            return
+        names = flag_words(branch.bifurcation_kind.attrs)
+        there = np.interp(branch.bifurcation_place.values, np.arange(len(scale)), scale)
+        values = branch[f"bifurcation_{name}"].transpose("bifurcation", ...).values
+        rows = values.reshape(len(there), -1) * there[:, np.newaxis]
+        places = branch.bifurcation_value.values / self.x_unit
+        style: Any = {"color": "black", "markerfacecolor": "white", "markersize": 5, "zorder": 3}
+        for at, row, kind in zip(places, rows, branch.bifurcation_kind.values, strict=True):
+            word = names[int(kind)].replace("Neimark Sacker", "Neimark-Sacker")
+            x = np.full(len(row), at)
+            plane.plot(x, row, BIFURCATION_MARKS[word], linestyle="none", label=word, **style)

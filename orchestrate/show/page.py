@@ -14,11 +14,13 @@ from markupsafe import Markup
 
 from ..running.store import timestamp
 from ..version import __version__
-from .figure_files import Figure, png_bytes, png_size
+from .figure_files import Figure, png_bytes
 
 MISSING = "–"  # in place of a number
+POLICY = (  # own pictures and the style with a digest, nothing else
+    "default-src 'none'; style-src 'sha256-{}'; img-src data:; base-uri 'none'; form-action 'none'"
+)
 PLACES = ("front", "second", "appendix")  # on paper: first page, pages that follow, end
-TONES = ("bad", "good", "unclear", "open")  # of a verdict, for its colour
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,9 @@ class Section:
         if self.picture is None:
             return {}
         png = self.picture if isinstance(self.picture, bytes) else png_bytes(self.picture)
-        return {"src": f"data:image/png;base64,{base64.b64encode(png).decode()}", **png_size(png)}
+        width, height = (int.from_bytes(png[start : start + 4], "big") for start in (16, 20))
+        address = f"data:image/png;base64,{base64.b64encode(png).decode()}"
+        return {"src": address, "width": width, "height": height}
 
 
 @dataclass(frozen=True)
@@ -57,7 +61,7 @@ class Verdict:
 
     word: str
     sentence: str
-    tone: str  # of `TONES`
+    tone: str  # "bad", "good", "unclear" or "open"
 
 
 @dataclass(frozen=True)
@@ -84,17 +88,12 @@ class Page:
         return environment.get_template("report.html.j2").render(
             page=self,
             style=Markup(style),
-            policy=content_security_policy(style),
+            policy=POLICY.format(
+                base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
+            ),
             version=__version__,
             date=timestamp().replace("T", " ").removesuffix(":00Z").removesuffix("Z"),
         )
-
-
-def content_security_policy(style: str) -> str:
-    """Return the page's Content-Security-Policy: own pictures and style, nothing else."""
-    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
-    allowed = f"default-src 'none'; style-src 'sha256-{digest}'; img-src data:"
-    return f"{allowed}; base-uri 'none'; form-action 'none'"
 
 
 # -- numbers as texts -----------------------------------------------------------------------------

@@ -38,10 +38,9 @@ def draw_passage_histories(
     for column, (name, data) in enumerate(shown.items()):
         panels, time = axes[column::count], data.time.values
         for panel, what in zip(panels, ROWS, strict=False):
-            points: Any = {"color": STRUCTURES.get(name, BLUE), "linewidth": 1.0}
-            panel.plot(
-                time, data[what], "." if what == "impacts" else "-", markersize=2.5, **points
-            )
+            style = "." if what == "impacts" else "-"
+            points: Any = {"color": STRUCTURES.get(name, BLUE), "markersize": 2.5}
+            panel.plot(time, data[what], style, linewidth=1.0, **points)
         dashed: Any = {"linewidth": 1.0, "linestyle": "--", "label": "resonance"}
         panels[0].axhline(resonance / display_scale_of(data, "rad/s")[0], color=GREY, **dashed)
         panels[0].set_title(f"{name}: {format_passage(data)}")
@@ -71,17 +70,13 @@ def draw_passage_with_spectra(
         time = data.time.values - origin
         instant: Any = {"alpha": 0.6, "label": "at the instant"}
         panels[0].plot(time, np.abs(data.speed), color=BLUE, linewidth=0.4, **instant)
-        mean_speed = (
-            mean_rate(data, np.abs(data.angle.values), 1) / display_scale_of(data, "rad/s")[0]
-        )
-        draw_line(panels[0], time, mean_speed, "-", BLACK, 1.2, "mean of a revolution")
+        mean_speed = mean_rate(data, np.abs(data.angle.values), 1)
+        shown_speed = mean_speed / display_scale_of(data, "rad/s")[0]
+        draw_line(panels[0], time, shown_speed, "-", BLACK, 1.2, "mean of a revolution")
         draw_line(panels[1], time, data.voltage, "-", BLACK, 1.0)
         draw_line(panels[2], time, data.x1, "-", STRUCTURES.get(name, BLUE), 0.3)
-        means = {
-            account: mean_rate(data, data[account].values, POWER_REVOLUTIONS, repeats=2)
-            for account in ACCOUNTS
-        }
-        draw_powers(panels[3], time, means)
+        twice = {x: mean_rate(data, data[x].values, POWER_REVOLUTIONS, 2) for x in ACCOUNTS}
+        draw_powers(panels[3], time, twice)
         mesh = draw_waterfall(panels[4], spectra[name], origin, factor, top)
         for panel in panels[:4]:
             panel.axvline(0.0, color=GREY, linewidth=0.8, zorder=0)
@@ -160,11 +155,9 @@ def draw_powers(axes: Axes, along: np.ndarray, powers: Mapping[str, np.ndarray])
 
 
 def mean_powers(revolutions: xr.Dataset) -> dict[str, np.ndarray]:
-    time = revolutions.time.values
-    span = time[POWER_REVOLUTIONS:] - time[:-POWER_REVOLUTIONS]
-    energies = {account: revolutions[account].values for account in ACCOUNTS}
-    lag = POWER_REVOLUTIONS
-    return {account: (total[lag:] - total[:-lag]) / span for account, total in energies.items()}
+    names, lag = ("time", *ACCOUNTS), POWER_REVOLUTIONS
+    span, *gained = (revolutions[x].values[lag:] - revolutions[x].values[:-lag] for x in names)
+    return {account: energy / span for account, energy in zip(ACCOUNTS, gained, strict=True)}
 
 
 def mean_rate(

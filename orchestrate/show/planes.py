@@ -151,9 +151,8 @@ def is_geometric_sequence(values: np.ndarray) -> bool:
 @styled
 def draw_basin(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -> Figure:
     y, x = map(str, data.attractor_of.dims)
-    by_ratio = (
-        "eta" in data.coords and not display_units_of(data).frequency
-    )  # else the title has it
+    # with a unit of frequency the title has it
+    by_ratio = "eta" in data.coords and not display_units_of(data).frequency
     eta = rf"$\eta$ = {float(data.eta):.4g}" if by_ratio else ""
     words = title or labels.join_by_commas([title_from_attributes(data, ("eta", x, y)), eta])
     figure, (plane,) = make_panels(1, 1, (6.4, 5.6), words)
@@ -172,10 +171,8 @@ def draw_basin(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", 
 
 
 @styled
-def draw_phase_curves(
-    attractors: xr.Dataset, motions: Sequence[xr.Dataset], title: str = ""
-) -> Figure:
-    figure, (plane,) = make_panels(1, 1, (6.4, 5.6), title or title_from_attributes(motions[0]))
+def draw_phase_curves(attractors: xr.Dataset, motions: Sequence[xr.Dataset]) -> Figure:
+    figure, (plane,) = make_panels(1, 1, (6.4, 5.6), title_from_attributes(motions[0]))
     (right, x_label), (up, y_label) = (
         coordinate_scale_and_label(motions[0], n) for n in ("x_rel", "v_rel")
     )
@@ -206,12 +203,8 @@ def coordinate_scale_and_label(data: xr.Dataset, name: str) -> tuple[float, str]
         return 1.0, labels.symbol_with_unit(name)
     factor, word = display_scale_of(data, "m/s" if name.startswith("v") else "m")
     unit = "" if shows_lengths_as_ratios(data) else labels.typeset_unit(word)
-    words = (
-        labels.gap_name(data)
-        if name == "x_rel"
-        else labels.symbol_with_unit(name).rpartition(" in ")[0]
-    )
-    return factor, append_unit(words, unit)
+    symbol = labels.symbol_with_unit(name).rpartition(" in ")[0]
+    return factor, append_unit(labels.gap_name(data) if name == "x_rel" else symbol, unit)
 
 
 def mark_attractors(
@@ -232,11 +225,15 @@ def mark_attractors(
 
 
 def add_attractors_to_legend(plane: Axes, data: xr.Dataset) -> None:
+    length = unit_of_xi(data) if display_units_of(data).length else None
     for index, colour in zip(range(data.sizes["attractor"]), BASINS, strict=False):
         part = data.isel(attractor=index)
         n, impacts = float(part.multiplicity), float(part.impacts_per_period)
         kind = labels.orbit_label(n, impacts) or f"not periodic, {impacts:.2f} impacts per T"
-        gap = format_gap(data, float(part.xi_rel_max))
+        xi = float(part.xi_rel_max)
+        gap = f"{XI_REL} = {xi:.3g}"
+        if length is not None:
+            gap = f"gap = {labels.format_length(data, xi * float(length))}"
         text = f"{index}, {float(part.share):.1%}: {kind}, largest {gap}"
         plane.plot([], [], "s", color=colour, label=text)
     rest = data.share.values[len(BASINS) :].sum()
@@ -246,14 +243,6 @@ def add_attractors_to_legend(plane: Axes, data: xr.Dataset) -> None:
     if "start" not in data.dims and (data.attractor_of.values < 0).any():  # in no share
         words = "no states: the gap would be below 0"
         plane.plot([], [], "s", color="white", markeredgecolor=OTHER, label=words)
-
-
-def format_gap(data: xr.Dataset, gap: float) -> str:
-    """Format a gap over a eta^2, as a length where a unit of length is asked for."""
-    length = unit_of_xi(data) if display_units_of(data).length else None
-    if length is None:
-        return f"{XI_REL} = {gap:.3g}"
-    return f"gap = {labels.format_length(data, gap * float(length))}"
 
 
 @draws("border", partner=MORE)
@@ -414,8 +403,8 @@ def draw_phase_curves_of_masses(data: xr.Dataset) -> Figure:
 
 
 @styled
-def draw_relative_phase_curves(data: xr.Dataset, columns: int = 4) -> Figure:
-    count = data.sizes["panel"]
+def draw_relative_phase_curves(data: xr.Dataset) -> Figure:
+    count, columns = data.sizes["panel"], 4
     rows = -(-count // columns)
     figure, axes = make_panels(rows, columns, (2.7 * columns, 2.6 * rows))
     for index, plane in enumerate(axes[:count]):

@@ -68,16 +68,15 @@ def report(
     shown = [with_units(answer, units) for answer in answers]
     first, *others = sorted(shown, key=lambda answer: require_kind(answer) != "detect")
     verdict = make_verdict(first) if require_kind(first) == "detect" else None
-    sections = [section for answer in (first, *others) for section in sections_of(answer)]
+    sections: list[Section] = []
+    for answer in (first, *others):
+        kind = require_kind(answer)
+        if kind == "detect":
+            sections += verdict_sections(answer)
+        else:
+            sections.append(signs_section(answer) if kind == "signs" else answer_section(answer))
     heading, record = title or title_of(first), str(first.attrs.get("record_file", ""))
     about = notes or (record if record not in heading else "")
     page = Page(heading, about, [*sections, origin_section([first, *others])], verdict)
     text = page.html().encode()
-    return write_atomically(Path(output), lambda path: path.write_bytes(text))
-
-
-def sections_of(answer: xr.Dataset) -> list[Section]:
-    kind = require_kind(answer)
-    if kind == "detect":
-        return verdict_sections(answer)
-    return [signs_section(answer) if kind == "signs" else answer_section(answer)]
+    return write_atomically(output, lambda path: path.write_bytes(text))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
+from itertools import product
 from typing import Any
 
 import matplotlib as mpl
@@ -16,7 +17,7 @@ from .colours import BLACK, DIRECTION_STYLES, GREY, STRUCTURES
 from .kinds import BRANCHES, draws
 from .labels import title_from_attributes
 from .lines import MAX_DISTINCT, MarkStyle, marker_keywords
-from .overlay import Overlay
+from .overlay import place_over_responses
 from .scales import (
     AxisValues,
     acceleration_scale,
@@ -53,7 +54,7 @@ def draw_resonance(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Datas
     set_title(figure, title or title_from_attributes(data))
     parameter = varied_dimension(data[rows[0][0]])
     x = axis_values(data, parameter)
-    branches = [Overlay(branch, data, parameter) for branch in overlay]
+    branches = [place_over_responses(branch, data, parameter) for branch in overlay]
     for name, plane in axes.items():
         if name == THRESHOLD:
             draw_level_of_box(plane, data, x)
@@ -82,8 +83,10 @@ def draw_curves_of_quantity(
     """Draw one quantity's curves and list each structure's maximum; no gap if bonded."""
     factor, unit = quantity_scale(data, values)
     largest: dict[str, tuple[float, float]] = {}
-    for structure, direction, part in iterate_curves(values):
-        curve = part.values / factor
+    for name in {"structure", "direction"} - set(values.dims):
+        values = values.expand_dims({name: [""]})
+    for structure, direction in product(values.structure.values, values.direction.values):
+        curve = values.sel(structure=structure, direction=direction).values / factor
         if np.nanmax(curve, initial=0.0) <= 0.0:
             continue
         label = ", ".join(filter(None, [structure, direction]))
@@ -96,16 +99,14 @@ def draw_curves_of_quantity(
     axes.margins(x=0.0, y=0.12)
     set_plain_log_scale(axes)
     axes.set_ylabel(append_unit(NAMES[str(values.name)], unit))
-    write_largest_values(axes, largest, unit, x)
-
-
-def iterate_curves(values: xr.DataArray) -> Iterator[tuple[str, str, xr.DataArray]]:
-    """Yield structure, direction and curve of each; an empty text for what there is one of."""
-    structures = values.structure.values if "structure" in values.dims else [""]
-    for structure in map(str, structures):
-        part = values.sel(structure=structure) if structure else values
-        for direction in map(str, part.direction.values) if "direction" in part.dims else [""]:
-            yield structure, direction, part.sel(direction=direction) if direction else part
+    right = all(at < float(np.mean(axes.get_xlim())) for _, at in largest.values())
+    style: Any = {"ha": "right" if right else "left", "va": "top", "fontsize": 7}
+    for row, (structure, (value, at)) in enumerate(largest.items()):
+        corner = (0.99 if right else 0.01, 0.97 - 0.075 * row)
+        number = f"{value:.4g} {unit}".rstrip()
+        text = f"{structure}: {number} at {x.format(at)}".lstrip(": ")
+        colour = STRUCTURES.get(structure, BLACK)
+        axes.text(*corner, text, color=colour, transform=axes.transAxes, **style)
 
 
 def draw_level_of_box(axes: Axes, data: xr.Dataset, x: AxisValues) -> None:
@@ -170,20 +171,6 @@ def axis_position(value: float, parameter: xr.DataArray, x: AxisValues) -> float
     return float(np.interp(value, parameter.values[order], x.values[order]))
 
 
-def write_largest_values(
-    axes: Axes, largest: Mapping[str, tuple[float, float]], unit: str, x: AxisValues
-) -> None:
-    middle = float(np.mean(axes.get_xlim()))
-    right = all(at < middle for _, at in largest.values())
-    style: Any = {"ha": "right" if right else "left", "va": "top", "fontsize": 7}
-    for row, (structure, (value, at)) in enumerate(largest.items()):
-        corner = (0.99 if right else 0.01, 0.97 - 0.075 * row)
-        number = f"{value:.4g} {unit}".rstrip()
-        text = f"{structure}: {number} at {x.format(at)}".lstrip(": ")
-        colour = STRUCTURES.get(structure, BLACK)
-        axes.text(*corner, text, color=colour, transform=axes.transAxes, **style)
-
-
 @draws("resonance_levels")
 @styled
 def draw_resonance_levels(data: xr.Dataset, title: str = "") -> Figure:
@@ -246,11 +233,5 @@ def mark_lowest_threshold(axes: Axes, data: xr.Dataset) -> None:
     (factor, unit), (turn, word) = acceleration_scale(data, "g"), frequency_scale(data)
     place, level = float(data[f"{LOWEST}_frequency"]) / turn, float(data[LOWEST]) / factor
     where = f"at {place:.5g} {word}" if word != "eta" else rf"at $\eta$ = {place:.5g}"
-    style: Any = {"color": BLACK, "markersize": 4.0, "linestyle": "none"}
-    axes.plot(
-        place,
-        level,
-        "o",
-        label=" ".join(filter(None, (f"lowest: {level:.3g}", unit, where))),
-        **style,
-    )
+    label = " ".join(filter(None, (f"lowest: {level:.3g}", unit, where)))
+    axes.plot(place, level, "o", color=BLACK, markersize=4.0, linestyle="none", label=label)

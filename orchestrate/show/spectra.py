@@ -16,6 +16,7 @@ from .labels import format_frequency, has_frequency_unit, title_from_attributes
 from .scales import acceleration_scale, append_unit, frequency_scale
 from .style import add_figure_legend, make_panels, styled
 
+LEAST_SHOWN = 1e-4  # of the largest line of a harmonic response
 FLOOR = 1e-6  # of a motor's spectra: the lower end of the axis over the largest amplitude
 SIDES: tuple[dict[str, tuple[str, float, str]], ...] = (  # a thin line lies on a wide one
     {"bonded": (BLUE, 2.6, "bonded")},
@@ -48,9 +49,9 @@ def acceleration_spectrum(
 
 @draws("spectra")
 @styled
-def draw_spectra(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> Figure:
-    felt, unit = acceleration_scale(data)
-    shown = data.acceleration.sel(mass=mass) / felt
+def draw_spectra(data: xr.Dataset, title: str = "") -> Figure:
+    (felt, unit), (turn, hertz) = acceleration_scale(data), frequency_scale(data)
+    shown = data.acceleration.sel(mass=1) / felt
     along, with_unit = str(shown.dims[0]), has_frequency_unit(data)
     count, size = shown.sizes[along], (9.6, 0.9 + 2.1 * shown.sizes[along])
     title = title or title_from_attributes(data)
@@ -58,46 +59,35 @@ def draw_spectra(data: xr.Dataset, title: str = "", mass: int = 1, decades: int 
     for index in range(count):
         part = shown.isel({along: index})
         top = float(part.max()) or 1.0
-        floor = 10.0**-decades * top
+        floor = LEAST_SHOWN * top
+        at = float(part.frequency) / turn
+        words = f"{at:.4g} {hertz}" if with_unit else rf"$\eta$ = {float(part.eta):.4g}"
+        lines = data.order.values * (at if with_unit else 1.0)
         for plane, kinds in zip(axes[2 * index : 2 * index + 2], SIDES, strict=True):
-            draw_spectra_of_structure(plane, data, part, kinds, floor)
+            for kind, (colour, width, label) in kinds.items():
+                if kind in data.kind.values:
+                    values = part.sel(kind=kind).values
+                    draw_stems(plane, lines, values, floor, width, color=colour, label=label)
+            plane.set_title(f"{next(iter(kinds))}, {words}")
+            plane.set_xlim(0.0, 1.02 * float(lines.max()))
         axes[2 * index].set_ylim(floor, 2.0 * top)
-        axes[2 * index].set_ylabel(append_unit(f"acceleration\nof mass {mass}", unit))
-    lines = f"in {frequency_scale(data)[1]}" if with_unit else r"over $\Omega$"
+        axes[2 * index].set_ylabel(append_unit("acceleration\nof mass 1", unit))
+    over = f"in {hertz}" if with_unit else r"over $\Omega$"
     for plane in axes if with_unit else axes[-2:]:
-        plane.set_xlabel(f"frequency of the line {lines}")
-    left_out = f"what is below {10.0**-decades:g} of the largest line is left out"
+        plane.set_xlabel(f"frequency of the line {over}")
+    left_out = f"what is below {LEAST_SHOWN:g} of the largest line is left out"
     add_figure_legend(figure, axes[:2], sum(map(len, SIDES)), title=left_out)
     return figure
 
 
-def draw_spectra_of_structure(
-    axes: Axes,
-    data: xr.Dataset,
-    amplitudes: xr.DataArray,
-    kinds: dict[str, tuple[str, float, str]],
-    floor: float,
-) -> None:
-    with_unit, (turn, unit) = has_frequency_unit(data), frequency_scale(data)
-    at = float(amplitudes.frequency) / turn
-    words = f"{at:.4g} {unit}" if with_unit else rf"$\eta$ = {float(amplitudes.eta):.4g}"
-    lines = data.order.values * (at if with_unit else 1.0)
-    for kind, (colour, width, label) in kinds.items():
-        if kind in data.kind.values:
-            values = amplitudes.sel(kind=kind).values
-            draw_stems(axes, lines, values, floor, width, color=colour, label=label)
-    axes.set_title(f"{next(iter(kinds))}, {words}")
-    axes.set_xlim(0.0, 1.02 * float(lines.max()))
-
-
 @draws("drive_spectra")
 @styled
-def draw_drive_spectra(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
+def draw_drive_spectra(data: xr.Dataset, title: str = "") -> Figure:
     count = data.sizes["kind"]
     figure, axes = make_panels(count, 1, (10, 3.5 * count), title, sharex=True, sharey=True)
     turning = data if display_units_of(data).frequency else with_units(data, "rad/s")
     felt, unit = acceleration_scale(data)
-    shown = data.acceleration.sel(mass=mass) / felt
+    shown = data.acceleration.sel(mass=1) / felt
     top = float(shown.max())
     for panel, kind in zip(axes, map(str, data.kind.values), strict=True):
         values, colour = shown.sel(kind=kind).values, STRUCTURES[kind]

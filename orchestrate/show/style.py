@@ -101,10 +101,10 @@ def add_figure_legend(figure: Figure, axes: Iterable[Axes], columns: int = 4, **
         figure.legend(list(words.values()), list(words), **position, **more)
 
 
-def add_legend_below(axes: Axes, columns: int = 3) -> None:
+def add_legend_below(axes: Axes) -> None:
     if axes.get_legend_handles_labels()[0]:
         below: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.16), "frameon": False}
-        axes.legend(ncols=columns, **below)
+        axes.legend(ncols=3, **below)
 
 
 def add_legend_above(axes: Axes, columns: int = 1) -> None:

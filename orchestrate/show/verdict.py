@@ -27,28 +27,25 @@ NAMES_OF_CHANNELS = (
 def make_verdict(answer: xr.Dataset) -> Verdict:
     word = str(answer.verdict.values)
     sentences = {
-        "delaminated": delaminated_statement,
-        "no opening seen": no_opening_statement,
-        "not described": lambda _: (
+        "delaminated": delaminated_statement(answer),
+        "no opening seen": no_opening_statement(answer),
+        "not described": (
             "None of the structures that were tried, sound or delaminated, describes this record: "
             "the beam, its clamp or the sensors do something else."
         ),
-        "undecided": lambda _: "This record does not tell a delaminated beam from a sound one.",
+        "undecided": "This record does not tell a delaminated beam from a sound one.",
     }
-    statement = sentences[word](answer) + frequencies_sentence(answer)
-    if wiring := answer.attrs.get("wiring"):
-        statement = f"The wiring is doubtful: {wiring}. As it is: {statement}"
-    return Verdict(make_sentence(word), statement, TONES.get(word, "open"))
-
-
-def frequencies_sentence(answer: xr.Dataset) -> str:
-    """Return a sentence with the natural frequencies of the best stated fit; empty without one."""
+    statement = sentences[word]
     texts = []
     for best in fits_with_values(answer)[:1]:
         for name in best.parameter.values[best.unit.values == "Hz"]:
             text = format_fitted_value(best.sel(parameter=name), "Hz")
             texts += [f"{name} = {text}"] if text != MISSING else []
-    return f" Natural frequencies fitted: {', '.join(texts)}." if texts else ""
+    if texts:
+        statement += f" Natural frequencies fitted: {', '.join(texts)}."
+    if wiring := answer.attrs.get("wiring"):
+        statement = f"The wiring is doubtful: {wiring}. As it is: {statement}"
+    return Verdict(make_sentence(word), statement, TONES.get(word, "open"))
 
 
 def delaminated_statement(answer: xr.Dataset) -> str:
@@ -182,6 +179,15 @@ def fits_section(answer: xr.Dataset) -> Section | None:
 def misfit_section(answer: xr.Dataset) -> Section | None:
     if "misfit_at" not in answer:
         return None
+    columns, rows = ("structure", "misfit", "distinct fits", "motions computed"), []
+    for one in fits_by_misfit(answer):
+        minima = f"{int(np.isfinite(one.minima).sum())}" if "minima" in one else MISSING
+        computed = format_number(scalar_or_nan(one, "evaluations"), digits=6)
+        misfit = format_number(float(one.misfit))
+        rows.append((str(one.hypothesis.values), misfit, minima, computed))
+    # the best fit on which the verdict rests stands out
+    parted = {"delaminated": True, "no opening seen": False}.get(str(answer.verdict.values))
+    deciding = [i for i, row in enumerate(rows) if row[0].startswith(PARTED) == parted][:1]
     text = (
         "The misfit is the distance of a structure's motion from the measured one. It is 1 where "
         "they differ by as much as noise and the usual error of a good model explain."
@@ -189,25 +195,11 @@ def misfit_section(answer: xr.Dataset) -> Section | None:
     return Section(
         "Where the structures differ from the measurement",
         [text],
-        picture=draw_misfit(answer.assign_attrs(title="")),
+        picture=draw_misfit(answer),
         caption="Misfit of each structure over the frequency of the excitation",
-        tables=[hypothesis_table(answer)],
+        tables=[Table(columns, rows, frozenset(deciding))],
         place="appendix",
     )
-
-
-def hypothesis_table(answer: xr.Dataset) -> Table:
-    """Return a table of the hypotheses, the best fit first; marked: on which the verdict rests."""
-    rows = []
-    for one in fits_by_misfit(answer):
-        minima = f"{int(np.isfinite(one.minima).sum())}" if "minima" in one else MISSING
-        computed = format_number(scalar_or_nan(one, "evaluations"), digits=6)
-        misfit = format_number(float(one.misfit))
-        rows.append((str(one.hypothesis.values), misfit, minima, computed))
-    parted = {"delaminated": True, "no opening seen": False}.get(str(answer.verdict.values))
-    deciding = [i for i, row in enumerate(rows) if row[0].startswith(PARTED) == parted][:1]
-    columns = ("structure", "misfit", "distinct fits", "motions computed")
-    return Table(columns, rows, frozenset(deciding))
 
 
 def parameter_section(answer: xr.Dataset) -> Section | None:
@@ -252,16 +244,14 @@ def format_fitted_value(at: xr.Dataset, unit: str) -> str:
 
 def assumption_section(answer: xr.Dataset) -> Section:
     own = [text.strip() for text in str(answer.attrs.get("assumed", "")).split(";")]
-    points = [*ALWAYS_ASSUMED, *describe_guess(answer), *map(make_sentence, filter(None, own))]
+    points = list(ALWAYS_ASSUMED)
+    m1, m2, k1, k2 = (float(answer.attrs.get(x, math.nan)) for x in ("m1", "m2", "k1", "k2"))
+    if min(m1, m2, k1, k2) > 0.0:  # the guess with which the search began
+        masses = " and ".join(format_number(m, "kg") for m in (m1, m2))
+        halves = (math.sqrt(k1 / m1) / TURN, math.sqrt(k2 / m2) / TURN)
+        frequencies = " and ".join(format_number(f, "Hz") for f in halves)
+        points.append(
+            f"Guessed of both halves: masses of {masses}, which were kept, and {frequencies}."
+        )
+    points += map(make_sentence, filter(None, own))
     return Section("What was assumed", [NAMES_OF_CHANNELS], points, place="appendix")
-
-
-def describe_guess(answer: xr.Dataset) -> list[str]:
-    """Return lines on the guess with which the search began; its masses were kept."""
-    numbers = {name: float(answer.attrs.get(name, math.nan)) for name in ("m1", "m2", "k1", "k2")}
-    if not all(value > 0.0 for value in numbers.values()):
-        return []
-    masses = " and ".join(format_number(numbers[name], "kg") for name in ("m1", "m2"))
-    halves = (math.sqrt(numbers[f"k{i}"] / numbers[f"m{i}"]) / TURN for i in (1, 2))
-    frequencies = " and ".join(format_number(f, "Hz") for f in halves)
-    return [f"Guessed of both halves: masses of {masses}, which were kept, and {frequencies}."]

@@ -55,12 +55,17 @@ def draw_ramps(
                 draw_impacts(axes[2], data.isel(revolution=part), direction)
         mark_jumps(axes[0], data, name)
     if theory is not None:
-        draw_theory(axes, in_display_units(theory))
+        theory, line = in_display_units(theory), {"color": BLACK, "linewidth": 1.0}
+        stable = theory.stable.values
+        draw_speed_curves(axes, theory, stable, "-.", **line, label=f"{THEORY}, stable")
+        draw_speed_curves(axes, theory, ~stable, ":", **line, label=f"{THEORY}, unstable")
     if branches is not None:
         draw_branches(axes, in_display_units(branches).sel(structure=list(runs)))
     name = list(runs)[-1]
     draw_outward_powers(axes[3], shown[name], name)
-    axes[0].set_title("\n".join(format_jumps_of_run(*item) for item in runs.items()))
+    jumps = {name: ", ".join(jump_texts(data)) for name, data in runs.items()}
+    texts = (f"{name}: {'jump' if text else 'no jump'} {text}" for name, text in jumps.items())
+    axes[0].set_title("\n".join(map(str.rstrip, texts)))
     label_speed_axes(axes, shown[name])
     axes[2].set(xlabel=axes[1].get_xlabel(), ylabel="impacts in a revolution")
     axes[3].set(xlabel=axes[1].get_xlabel(), ylabel="power in W")
@@ -127,12 +132,6 @@ def draw_speed_curves(
     axes[1].plot(speed, amplitude, style, **line)
 
 
-def draw_theory(axes: Sequence[Axes], theory: xr.Dataset) -> None:
-    stable, line = theory.stable.values, {"color": BLACK, "linewidth": 1.0}
-    draw_speed_curves(axes, theory, stable, "-.", **line, label=f"{THEORY}, stable")
-    draw_speed_curves(axes, theory, ~stable, ":", **line, label=f"{THEORY}, unstable")
-
-
 def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
     """Draw stationary motions thick and pale under the ramps, dotted where unstable."""
     for name in branches.structure.values:
@@ -156,10 +155,6 @@ def drop_spin_up(data: xr.Dataset) -> xr.Dataset:
     end = first + int(moves[0]) if moves.size else 0
     early = end < len(change) // 2  # steps of the voltage hold too, all the time
     return data.isel(revolution=slice(end, None)) if early else data
-
-
-def format_jumps_of_run(name: str, data: xr.Dataset) -> str:
-    return f"{name}: jump {', '.join(jump_texts(data))}" if jump_texts(data) else f"{name}: no jump"
 
 
 def split_there_and_back(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
@@ -203,11 +198,11 @@ def draw_outward_powers(axes: Axes, data: xr.Dataset, name: str) -> None:
     outward = split_there_and_back(data)[0][0]
     if len(outward) < 3 * POWER_REVOLUTIONS:
         return
-    part = data.isel(revolution=outward)
-    speed = running_mean(part.speed.values[1:], POWER_REVOLUTIONS)
-    powers = {"speed": speed, **passage.mean_powers(part)}
-    twice = {account: running_mean(values, POWER_REVOLUTIONS) for account, values in powers.items()}
-    passage.draw_powers(axes, twice["speed"], twice)
+    part, count = data.isel(revolution=outward), POWER_REVOLUTIONS
+    powers = passage.mean_powers(part).items()
+    twice = {account: running_mean(values, count) for account, values in powers}
+    speed = running_mean(running_mean(part.speed.values[1:], count), count)
+    passage.draw_powers(axes, speed, twice)
     means = f"means of {POWER_REVOLUTIONS} revolutions, taken twice"
     axes.set_title(f"power on the way there, {name}\n{means}")
 
@@ -247,7 +242,7 @@ def draw_capture(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
         else:
             draw_passage_times(panel, data)
         panel.label_outer()
-        add_legend_below(panel, columns=3)
+        add_legend_below(panel)
     return figure
 
 

@@ -91,24 +91,32 @@ export class App {
   /** Buttons, keys and inputs. */
   connectElements() {
     const { regions, inspector } = this;
-    listenToDiagram(regions.view, {
-      choose: (eta) => this.choose(eta),
-      zoom: (low, high) => this.open(low, high),
-      move: (steps) => this.moveChoice(steps),
+    const views = {
       back: () => this.stepThroughDiagrams(-1),
       forth: () => this.stepThroughDiagrams(1),
       whole: () => this.open(this.table.low, this.table.high),
+    };
+    listenToDiagram(regions.view, {
+      choose: (eta) => this.choose(eta),
+      zoom: (low, high) => this.open(low, high),
+      move: (steps) => {
+        const { points } = regions.diagram;
+        const from = Number.isFinite(this.eta) ? nearestIndex(regions.diagram, this.eta) : Math.floor(points.length / 2);
+        this.choose(points[Math.min(Math.max(from + steps, 0), points.length - 1)].eta);
+      },
+      ...views,
     });
     const half = () => (regions.diagram.high - regions.diagram.low) / 2;
     const middle = () => (Number.isFinite(this.eta) ? this.eta : regions.diagram.low + half());
     /** @type {Record<string, () => void>} */
     const clicks = {
-      back: () => this.stepThroughDiagrams(-1),
-      forth: () => this.stepThroughDiagrams(1),
-      whole: () => this.open(this.table.low, this.table.high),
+      ...views,
       closer: () => this.open(middle() - 0.3 * half(), middle() + 0.3 * half()),
       "run-on": () => inspector.extendSection(),
-      others: () => this.showOthers(),
+      others: () => {
+        this.basin.wanted = true;
+        this.computeBasin();
+      },
       link: () => this.copyText(location.href, "link"),
       "command-copy": () => this.copyText(at("command").textContent ?? "", "command"),
       "motion-command-copy": () => this.copyText(at("motion-command").textContent ?? "", "command"),
@@ -142,8 +150,12 @@ export class App {
     input("direction").value = view.direction;
     this.regions.open(view.structure, view);
     const { name } = this.tour;
-    // of a diagram that is still to come, the motion from rest
-    if (view.eta !== null) this.choose(view.eta, true, view.start ?? (this.isStartKnown(view.eta) ? null : REST));
+    if (view.eta !== null) {
+      const { diagram } = this.regions;
+      const known = startOfResponse(diagram.lanes[0], nearestIndex(diagram, view.eta));
+      // of a diagram that is still to come, the motion from rest
+      this.choose(view.eta, true, view.start ?? (known ? null : REST));
+    }
     this.tour.markStop(name);
     this.writeLink();
   }
@@ -156,12 +168,6 @@ export class App {
     this.basin.reset();
     this.openLink(this.first);
     this.updateMotionTexts();
-  }
-
-  /** Whether it is known where the response at a frequency begins. @param {number} eta */
-  isStartKnown(eta) {
-    const { diagram } = this.regions;
-    return startOfResponse(diagram.lanes[0], nearestIndex(diagram, eta)) !== null;
   }
 
   /** @param {Structure} structure @param {Level} level */
@@ -227,13 +233,6 @@ export class App {
       this.showStatus("waits for the responses before it");
       this.writeLink();
     }
-  }
-
-  /** @param {number} steps to the next frequencies of the diagram */
-  moveChoice(steps) {
-    const { points } = this.regions.diagram;
-    const from = Number.isFinite(this.eta) ? nearestIndex(this.regions.diagram, this.eta) : Math.floor(points.length / 2);
-    this.choose(points[Math.min(Math.max(from + steps, 0), points.length - 1)].eta);
   }
 
   /** @param {number} eta */
@@ -312,11 +311,6 @@ export class App {
   computeBasin() {
     const { found, choice } = this.inspector;
     if (found && choice) this.basin.computeMap(choice, found.response);
-  }
-
-  showOthers() {
-    this.basin.wanted = true;
-    this.computeBasin();
   }
 
   /** @param {string} text @param {string} what */

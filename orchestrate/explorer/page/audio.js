@@ -10,10 +10,6 @@ export class Sound {
     this.source = null;
   }
 
-  get playing() {
-    return this.source !== null;
-  }
-
   /** No more, whatever is shown next. */
   silence() {
     this.wanted = false;

@@ -32,8 +32,8 @@ export class BasinPanel {
     /** @type {Order | null} */
     this.trial = null;
     this.tried = false; // whether all of the few have come
-    this.about = ""; // the point that is shown
-    this.point = ""; // that the picture was computed at
+    this.point = ""; // that is shown
+    this.mapped = false; // whether its picture is, or will be
     this.visible = false;
     this.wanted = false; // whether it was ever asked for
     /** @param {IntersectionObserverEntry[]} entries */
@@ -52,8 +52,8 @@ export class BasinPanel {
     this.shown = null;
     this.told();
     const text = JSON.stringify(point);
-    if (this.about === text) return;
-    this.about = text;
+    if (this.point === text) return;
+    this.point = text;
     this.forgetAttractors();
   }
 
@@ -67,7 +67,7 @@ export class BasinPanel {
   /** Nothing is known. */
   forgetAttractors() {
     this.order?.cancel();
-    this.point = "";
+    this.mapped = false;
     this.few = [];
     this.tried = false;
     this.view.clearMap();
@@ -83,7 +83,7 @@ export class BasinPanel {
 
   /** What is known of other motions. */
   hintWords() {
-    const complete = Boolean(this.point) && this.at("basins").dataset.complete === "true";
+    const complete = this.mapped && this.at("basins").dataset.complete === "true";
     if (this.hasOtherMotions) return complete ? "Other motions: the coloured map." : "There is another motion.";
     return complete ? `No other motion from ${SIDE * SIDE} starts.` : "";
   }
@@ -91,9 +91,9 @@ export class BasinPanel {
   /** A motion is shown: mark it, and try a few starts. @param {Choice} choice @param {import("./response.js").Response} response */
   setShownMotion({ point }, response) {
     this.shown = attractorOf(response, point);
-    if (this.point) this.listAttractors(this.at("basins").dataset.complete === "true");
+    if (this.mapped) this.listAttractors(this.at("basins").dataset.complete === "true");
     this.told();
-    if (this.point || this.few.length) return;
+    if (this.mapped || this.few.length) return;
     const cells = FEW.flatMap((column) => FEW.map((row) => [column, row]));
     const trial = this.pool.ask("basin", { point, plane: planeAround(point, response), cells }, (parts) => {
       for (const part of parts) addOrFindAttractor(this.few, part, this.alike);
@@ -109,9 +109,9 @@ export class BasinPanel {
 
   /** Unless it is there. @param {Choice} choice @param {import("./response.js").Response} response */
   computeMap({ point, level }, response) {
-    if (!this.wanted || this.point === JSON.stringify(point)) return;
+    if (!this.wanted || this.mapped) return;
     this.order?.cancel();
-    this.point = JSON.stringify(point);
+    this.mapped = true;
     const plane = planeAround(point, response);
     this.view.startMap(point, plane, level);
     const asked = dealOut(cellsCoarseFirst(SIDE), this.pool.workers.length).map((cells) => ({ point, plane, cells }));
@@ -136,7 +136,8 @@ export class BasinPanel {
         go.textContent = "Show";
         go.ariaLabel = `show: ${text}`;
         go.addEventListener("click", () => this.choose(start));
-        row.append(key, spanWith(text), now ? shownNowLabel() : go);
+        const words = Object.assign(document.createElement("span"), { textContent: text });
+        row.append(key, words, now ? Object.assign(document.createElement("span"), { className: "now", textContent: "shown now" }) : go);
         return row;
       }),
     );
@@ -145,15 +146,6 @@ export class BasinPanel {
     this.told();
     this.view.picture.describe(`Where starts lead to: ${words.map(({ text }) => text).join("; ")}`);
   }
-}
-
-/** @param {string} text */
-const spanWith = (text) => Object.assign(document.createElement("span"), { textContent: text });
-
-/** In place of a button. */
-function shownNowLabel() {
-  const words = document.createElement("span");
-  return Object.assign(words, { className: "now", textContent: "shown now" });
 }
 
 /** The plane of starts around a response. @param {Point} point @param {import("./response.js").Response} response @returns {Plane} */

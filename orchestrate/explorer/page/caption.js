@@ -22,8 +22,9 @@ const LOADS = {
 export function beamWords(point, level) {
   const { structure, eta } = point;
   const kind = structure.wall ? "One mass before a wall" : "Delaminated beam";
-  const more = Object.entries(LOADS).map(([name, text]) => (fieldNumbers(structure)[name] ? `, ${text(formatNumber(fieldNumbers(structure)[name]))}` : "")).join("");
-  const { e, mu, kappa, D, xi0, f1, f2, mass1, mass2, zeta, gap } = fieldNumbers(structure);
+  const numbers = fieldNumbers(structure);
+  const { e, mu, kappa, D, xi0, f1, f2, mass1, mass2, zeta, gap } = numbers;
+  const more = Object.entries(LOADS).map(([name, text]) => (numbers[name] ? `, ${text(formatNumber(numbers[name]))}` : "")).join("");
   if (!isInHertz(level)) {
     const halves = structure.wall ? "" : `, μ = ${formatNumber(mu)}, κ = ${formatNumber(kappa)}`;
     return `${kind}: e = ${formatNumber(e)}${halves}, D = ${formatNumber(D)}, ξ₀ = ${formatNumber(xi0)}${more}; η = ${formatNumber(eta, 7)}`;

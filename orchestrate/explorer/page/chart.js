@@ -29,15 +29,14 @@ export function drawChart(pen, size, theme, chart) {
     pen.box(px(from), top, Math.max(px(to) - px(from), 0.5), height, { fill: theme.contact });
   }
   drawFrame(pen, place, theme, chart.x, chart.y);
-  pen.drawClipped(place, () => chart.series.forEach((series) => drawSeries(pen, series, px, py, theme)));
+  pen.drawClipped(place, () => {
+    for (const { x, y, colour, dots, alpha, width = 1.3 } of chart.series) {
+      const [xs, ys] = [Float64Array.from(x, px), Float64Array.from(y, py)];
+      if (dots) pen.dots(xs, ys, dots, { fill: theme[colour], alpha });
+      else pen.line(xs, ys, { stroke: theme[colour], width, alpha });
+    }
+  });
   drawLegend(pen, place, theme, chart);
-}
-
-/** @param {Pen} pen @param {Series} series @param {(v: number) => number} px @param {(v: number) => number} py @param {Theme} theme */
-function drawSeries(pen, { x, y, colour, dots, alpha, width = 1.3 }, px, py, theme) {
-  const [xs, ys] = [Float64Array.from(x, px), Float64Array.from(y, py)];
-  if (dots) pen.dots(xs, ys, dots, { fill: theme[colour], alpha });
-  else pen.line(xs, ys, { stroke: theme[colour], width, alpha });
 }
 
 /** @param {Pen} pen @param {Place} place @param {Theme} theme @param {Chart} chart */

@@ -6,7 +6,6 @@ import { unitsOption } from "./units.js";
 
 const PROGRAM = "python -m orchestrate";
 const REST = [0, 0, 0, 0];
-
 const FLAGS = ["bonded", "wall"];
 const PUSHES = ["box_acceleration", "force1", "force2"]; // of the excitation
 
@@ -27,7 +26,7 @@ export function diagramCommand(diagram, usual) {
   const { structure, direction, points, settings, lanes, level } = diagram;
   const starts = lanes.map(startOption);
   const how = `--transient ${settings.transient} --samples ${settings.samples}${setOptions(structure, usual)}${unitsOption(level)}`;
-  const options = rangeOptions(points) || listOptions(points);
+  const options = excitationOptions(points);
   if (options && starts.every(isRest)) return `${PROGRAM} sweep ${options} --direction ${direction} ${how}`;
   /** @param {number[]} start */
   const from = (start) => (isRest(start) ? "" : ` --start=${start.join(",")}`);
@@ -61,37 +60,32 @@ function pythonScript({ structure, points, settings }, direction, start, usual) 
   return `python -c 'import orchestrate; ${call}.to_netcdf("sweep_${direction}.nc")'`;
 }
 
-/** An excitation at the command line, where a range says it to the last bit; else nothing. @param {Point[]} points */
-function rangeOptions(points) {
-  if (points.every(isPaperExcitation)) return rangeOption("--eta", points.map(({ eta }) => eta), (eta) => eta);
+/** An excitation at the command line: a range where it says it to the last bit, else a list; nothing where no number says how strong it is. @param {Point[]} points */
+function excitationOptions(points) {
+  if (points.every(isPaperExcitation)) {
+    const etas = points.map(({ eta }) => eta);
+    return rangeOption("--eta", etas, 1) || `--eta ${etas.join(",")}`;
+  }
   const turns = points.map(({ frequency }) => frequency);
-  const range = rangeOption("--hz", turns, (hz) => 2 * Math.PI * hz) || rangeOption("--frequency", turns, (value) => value);
+  const range = rangeOption("--hz", turns, 2 * Math.PI) || rangeOption("--frequency", turns, 1) || `--frequency ${turns.join(",")}`;
   const level = levelOption(points);
-  return range && level && `${range} ${level}`;
-}
-
-/** The same as a list. @param {Point[]} points */
-function listOptions(points) {
-  if (points.every(isPaperExcitation)) return `--eta ${points.map(({ eta }) => eta).join(",")}`;
-  const level = levelOption(points);
-  return level && `--frequency ${points.map(({ frequency }) => frequency).join(",")} ${level}`;
+  return level && `${range} ${level}`;
 }
 
 /** How strongly all points are shaken; nothing where no number says it to the last bit. @param {Point[]} points */
 function levelOption(points) {
   const { frequency, amplitude } = points[0];
-  if (points.every((point) => point.amplitude === amplitude)) return `--amplitude ${amplitude}`;
   const level = Number(((amplitude * frequency * frequency) / GRAVITY).toPrecision(9));
-  const held = points.every((point) => point.amplitude === (level * GRAVITY) / (point.frequency * point.frequency));
-  return held ? `--g ${level}` : "";
+  if (points.every((point) => point.amplitude === (level * GRAVITY) / (point.frequency * point.frequency))) return `--g ${level}`;
+  return points.every((point) => point.amplitude === amplitude) ? `--amplitude ${amplitude}` : "";
 }
 
-/** Values as a range of decimal numbers; nothing if they are not. @param {string} option @param {number[]} values @param {(value: number) => number} of what the option's number becomes */
-function rangeOption(option, values, of) {
-  const decimals = values.map((value) => Number((value / of(1)).toFixed(9)));
+/** Values as a range of decimal numbers; nothing if they are not. @param {string} option @param {number[]} values @param {number} unit of the option */
+function rangeOption(option, values, unit) {
+  const decimals = values.map((value) => Number((value / unit).toFixed(9)));
   const [first, last] = [decimals[0], decimals[decimals.length - 1]];
   const step = Number((decimals.length > 1 ? (last - first) / (decimals.length - 1) : 1).toPrecision(9));
-  const even = values.every((value, i) => of(Number((first + i * step).toFixed(9))) === value);
+  const even = values.every((value, i) => unit * Number((first + i * step).toFixed(9)) === value);
   return even ? `${option} ${first}:${last}:${step}` : "";
 }
 
@@ -103,17 +97,15 @@ function isPaperExcitation({ eta, amplitude }) {
 /** The motion that continues a response. @param {Point} point @param {number[]} start @param {{transient: number, periods: number, points: number}} asked @param {Structure} usual */
 export function motionCommand(point, start, { transient, periods, points }, usual) {
   const how = `--transient ${transient} --periods ${periods} --points ${points}`;
-  return `${PROGRAM} simulate ${excitationOptions(point)} ${how} --start=${start.join(",")}${setOptions(point.structure, usual)}`;
+  return `${PROGRAM} simulate ${excitationOption(point)} ${how} --start=${start.join(",")}${setOptions(point.structure, usual)}`;
 }
 
 /** The excitation of one motion. @param {Point} point */
-function excitationOptions(point) {
-  const { eta, frequency, amplitude, structure } = point;
+function excitationOption(point) {
+  const { eta, frequency, structure } = point;
   // 1/eta^2 m says something of a structure of 1 rad/s only
   if (isPaperExcitation(point) && Math.abs(omegaOf(structure) - 1) < 1e-9) return `--eta ${eta}`;
   const hertz = hertzAsGiven(point);
   const turns = 2 * Math.PI * hertz === frequency ? `--hz ${hertz}` : `--frequency ${frequency}`;
-  const level = Number(((amplitude * frequency * frequency) / GRAVITY).toPrecision(9));
-  const held = amplitude === (level * GRAVITY) / (frequency * frequency);
-  return `${turns} ${held ? `--g ${level}` : `--amplitude ${amplitude}`}`;
+  return `${turns} ${levelOption([point])}`;
 }

@@ -10,8 +10,8 @@ import { shownUnit } from "./units.js";
  *   with a slider where there is a step
  */
 
-/** @type {Entry} */
-const RESTITUTION = ["e", "restitution e", 0, 1, 0.01];
+/** @type {Entry[]} */
+const RESTITUTION = [["e", "restitution e", 0, 1, 0.01]];
 /** @type {Entry[]} */
 const PAPER = [
   ["D", "damping D", 0, 0.1, 0.001],
@@ -46,12 +46,10 @@ const KINDS = { f1: "frequency", f2: "frequency", gap: "length", most: "length" 
 /** How many Hz or mm the unit of a field is. @param {string} name */
 const unitSize = (name) => (name in KINDS ? shownUnit(KINDS[name]).size : 1);
 
-/** An entry in the units that the page shows. @param {Entry} entry @returns {Entry} */
-function entryInShownUnits([name, label, low, high, step]) {
-  if (!(name in KINDS)) return step ? [name, label, low, high, step] : [name, label, low, high];
-  const ends = [low, high, step ?? 0].map((value) => Number((value / unitSize(name)).toPrecision(DIGITS)));
-  const words = label.replace(/Hz|mm/, shownUnit(KINDS[name]).name);
-  return step ? [name, words, ends[0], ends[1], ends[2]] : [name, words, ends[0], ends[1]];
+/** An entry in the units that the page shows. @param {Entry} entry */
+function entryInShownUnits([name, label, ...numbers]) {
+  const words = name in KINDS ? label.replace(/Hz|mm/, shownUnit(KINDS[name]).name) : label;
+  return /** @type {Entry} */ ([name, words, ...numbers.map((value = 0) => Number((value / unitSize(name)).toPrecision(DIGITS)))]);
 }
 
 export class Controls {
@@ -69,8 +67,7 @@ export class Controls {
     this.structure = structure;
     /** @type {Map<string, HTMLInputElement[]>} */
     this.inputs = new Map();
-    at("sliders").append(this.makeRow(RESTITUTION));
-    const parts = { "paper-sliders": PAPER, "own-sliders": OWN, "paper-loads": PAPER_LOADS, "own-loads": OWN_LOADS };
+    const parts = { sliders: RESTITUTION, "paper-sliders": PAPER, "own-sliders": OWN, "paper-loads": PAPER_LOADS, "own-loads": OWN_LOADS };
     for (const [id, entries] of Object.entries(parts)) at(id).append(...entries.map((entry) => this.makeRow(entryInShownUnits(entry))));
     for (const [name, { label }] of Object.entries(units)) {
       at(name in loops.pushes ? "own-loads" : "si").append(this.makeRow([name, `${name}, ${label}`.replace("_", " "), ...ranges[name]]));
@@ -88,10 +85,10 @@ export class Controls {
     const words = document.createElement("label");
     Object.assign(words, { htmlFor: name, textContent: label });
     row.append(words);
-    const number = makeInput({ type: "number", id: step ? `${name}-number` : name, min, max, step: "any" });
+    const number = Object.assign(document.createElement("input"), { type: "number", id: step ? `${name}-number` : name, min, max, step: "any" });
     const inputs = [number];
     if (step) {
-      inputs.unshift(makeInput({ type: "range", id: name, min, max, step }));
+      inputs.unshift(Object.assign(document.createElement("input"), { type: "range", id: name, min, max, step }));
       number.ariaLabel = `${label}, number`;
       watchNumber(inputs[0], (value) => this.setNumber(name, value, inputs[0]), "input");
     }
@@ -132,11 +129,4 @@ export class Controls {
       for (const input of inputs) if (input !== typed) showNumber(input, values[name] / unitSize(name), DIGITS);
     }
   }
-}
-
-/** @param {Record<string, string | number>} attributes */
-function makeInput(attributes) {
-  const input = document.createElement("input");
-  for (const [name, value] of Object.entries(attributes)) input.setAttribute(name, String(value));
-  return input;
 }

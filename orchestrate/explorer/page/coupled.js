@@ -26,12 +26,18 @@ export class Coupled {
     this.pair = this.buffers.newStructure("Pair", { ...pair, scratch, ...this.sideFields("oscillator"), ...this.sideFields("drive") });
     for (const side of SIDES) {
       if (!library.calls[`${MODELS[side]}_open_fmu`](this.instanceAddress(side), 0)) throw new Error("out of memory");
-      if (run) this.restoreSide(side, run[side]);
-      else this.initializeSide(side, start[side]);
+      if (run) {
+        this.callFmi(side, "fmi3DeserializeFMUState", this.buffers.array("u8", run[side]), run[side].length, this.kept[side]);
+        this.callFmi(side, "fmi3SetFMUState", library.viewMemory("u32", this.kept[side], 1)[0]);
+      } else this.initializeSide(side, start[side]);
     }
     this.row = this.buffers.array("f64", run?.row ?? columns.map(() => NaN));
     this.last = this.buffers.array("f64", run?.last ?? 3);
-    if (!run) this.startFirstRow(columns.indexOf("x1"), names.oscillator.outputs);
+    if (run) return;
+    // the first row: of the step nothing, and the motion; the loop looks at the drive
+    const [place, { outputs }] = [columns.indexOf("x1"), names.oscillator];
+    library.viewMemory("f64", this.row, place).fill(0);
+    this.callFmi("oscillator", "fmi3GetFloat64", this.buffers.valueReferences(outputs), outputs.length, this.row + 8 * place, outputs.length);
   }
 
   close() {
@@ -79,18 +85,6 @@ export class Coupled {
     this.callFmi(side, "fmi3ExitInitializationMode");
   }
 
-  /** The first row: of the step nothing, and the motion; the loop looks at the drive. @param {number} place @param {string[]} outputs */
-  startFirstRow(place, outputs) {
-    this.library.viewMemory("f64", this.row, place).fill(0);
-    this.callFmi("oscillator", "fmi3GetFloat64", this.buffers.valueReferences(outputs), outputs.length, this.row + 8 * place, outputs.length);
-  }
-
-  /** @param {Side} side @param {Uint8Array} bytes */
-  restoreSide(side, bytes) {
-    this.callFmi(side, "fmi3DeserializeFMUState", this.buffers.array("u8", bytes), bytes.length, this.kept[side]);
-    this.callFmi(side, "fmi3SetFMUState", this.library.viewMemory("u32", this.kept[side], 1)[0]);
-  }
-
   /** @param {Side} side */
   saveSide(side) {
     const size = this.buffers.array("u32", 1);
@@ -106,13 +100,8 @@ export class Coupled {
   /** All that a run resumes from. */
   stateOfRun() {
     const [oscillator, drive] = SIDES.map((side) => this.saveSide(side));
-    const [row, last] = [this.copyNumbers(this.row, this.start.columns.length), this.copyNumbers(this.last, 3)];
+    const [row, last] = [this.library.copyNumbers(this.row, this.start.columns.length), this.library.copyNumbers(this.last, 3)];
     return { oscillator, drive, row, last };
-  }
-
-  /** A copy of numbers. @param {number} address @param {number} count */
-  copyNumbers(address, count) {
-    return new Float64Array(/** @type {Float64Array} */ (this.library.viewMemory("f64", address, count)));
   }
 
   /** Steps under given voltages; the revolutions that they complete. @param {number[]} voltages */
@@ -126,9 +115,9 @@ export class Coupled {
     if (done < count) throw new Error(SIDES.map((side) => library.lastMessage(MODELS[side])).join(" ").trim() || "the coupled run stopped");
     const found = buffers.array("f64", 4 * count);
     const turns = library.calls.find_revolutions(rows, width, 1, ends, count, this.last, found);
-    const [table, voltage] = [this.copyNumbers(rows, (1 + count) * width), start.columns.indexOf("voltage")];
+    const [table, voltage] = [this.library.copyNumbers(rows, (1 + count) * width), start.columns.indexOf("voltage")];
     return Array.from({ length: turns }, (_, i) => {
-      const [place, time, speed, impacts] = this.copyNumbers(found + 32 * i, 4);
+      const [place, time, speed, impacts] = this.library.copyNumbers(found + 32 * i, 4);
       return { time, voltage: table[place * width + voltage], speed, impacts };
     });
   }

@@ -35,11 +35,6 @@ export function decimalGrid(low, high, count) {
   return values;
 }
 
-/** @param {Direction} direction @returns {("up" | "down")[]} */
-export function directionsOf(direction) {
-  return direction === "both" ? ["up", "down"] : [direction];
-}
-
 /**
  * A diagram that is still to be computed.
  * @param {Structure} structure
@@ -52,12 +47,9 @@ export function emptyDiagram(structure, { low, high, direction, level }, count, 
   const points = isInHertz(level)
     ? decimalGrid(hertzOf(low, structure), hertzOf(high, structure), count).map((hertz) => pointAtHertz(structure, hertz, level))
     : decimalGrid(low, high, count).map((eta) => pointAt(structure, eta, level));
-  const lanes = directionsOf(direction).map((way) => ({
-    direction: way,
-    found: new Array(points.length),
-    starts: null,
-    from: null,
-  }));
+  /** @type {("up" | "down")[]} */
+  const ways = direction === "both" ? ["up", "down"] : [direction];
+  const lanes = ways.map((way) => ({ direction: way, found: new Array(points.length), starts: null, from: null }));
   return { structure, direction, level, low, high, points, lanes, settings };
 }
 

@@ -53,52 +53,43 @@ export class AxisLimits {
 
 /** Dots of a diagram, in pixels of the screen. */
 export class DotPlate {
-  constructor() {
-    this.canvas = document.createElement("canvas");
-    this.dot = 1; // pixels high,
-    this.broad = 1; // and wide: no gaps between frequencies that lie apart
-    this.alpha = 1; // of a dot
-  }
-
   /** @param {Size} size @param {number} density @param {Axes} axes @param {number} count of responses that will come */
-  restart({ width, height }, density, axes, count) {
-    Object.assign(this.canvas, { width: Math.round(width * density), height: Math.round(height * density) });
+  constructor({ width, height }, density, axes, count) {
+    const pixels = { width: Math.round(width * density), height: Math.round(height * density) };
+    this.canvas = Object.assign(document.createElement("canvas"), pixels);
     this.context = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
-    this.data = this.context.createImageData(this.canvas.width, this.canvas.height);
-    const { gaps, impacts } = panelPlaces({ width, height });
-    const [left, top, wide, high] = gaps.map((number) => number * density);
-    this.bottom = top + high;
+    this.image = this.context.createImageData(pixels.width, pixels.height);
+    const places = panelPlaces({ width, height });
+    const [left, top, wide, high] = places.gaps.map((number) => number * density);
+    const [, below, , deep] = places.impacts.map((number) => number * density);
     this.strip = STRIP * density;
-    this.px = axisToPixels(axes.x, left, left + wide);
-    this.py = axisToPixels(axes.gaps, this.bottom - this.strip, top);
-    this.ends = [left, left + wide];
-    this.top = top;
-    const [, below, , deep] = impacts.map((number) => number * density);
-    this.counts = axisToPixels(axes.impacts, below + deep - this.strip, below);
-    this.countsEnds = [below, below + deep];
-    this.dot = Math.max(1, Math.round(density));
+    this.x = { ends: [left, left + wide], pixel: axisToPixels(axes.x, left, left + wide) };
+    this.gaps = { ends: [top, top + high], pixel: axisToPixels(axes.gaps, top + high - this.strip, top) };
+    this.impacts = { ends: [below, below + deep], pixel: axisToPixels(axes.impacts, below + deep - this.strip, below) };
+    this.dot = Math.max(1, Math.round(density)); // pixels high,
+    // and wide: no gaps between frequencies that lie apart
     this.broad = Math.max(this.dot, Math.min(6, Math.ceil((0.9 * wide) / Math.max(count, 1))));
-    this.alpha = Math.min(0.6, Math.max(0.1, 0.6 * Math.sqrt(wide / Math.max(count, 1) / this.dot)));
+    this.alpha = Math.min(0.6, Math.max(0.1, 0.6 * Math.sqrt(wide / Math.max(count, 1) / this.dot))); // of a dot
   }
 
-  /** @param {Diagram["points"][number]} point @param {Found} found @param {string} colour @param {number} unit of gaps on the axis */
+  /** @param {Point} point @param {Found} found @param {string} colour @param {number} unit of gaps on the axis */
   addResponse(point, found, colour, unit) {
-    const { px, py, counts, bottom = 0, strip = 0, top = 0 } = this;
-    if (!px || !py || !counts || !this.ends || !this.countsEnds) return;
-    const x = Math.floor(px(point.eta) - (this.broad - 1) / 2);
-    if (x < this.ends[0] || x > this.ends[1]) return;
+    const x = Math.floor(this.x.pixel(point.eta) - (this.broad - 1) / 2);
+    if (x < this.x.ends[0] || x > this.x.ends[1]) return;
     const rgb = rgbOf(colour);
+    const [top, bottom] = this.gaps.ends;
     for (const gap of found.gaps) {
-      const y = gap > LOWEST ? py(gap * unit) : bottom - strip / 2;
+      const y = gap > LOWEST ? this.gaps.pixel(gap * unit) : bottom - this.strip / 2;
       if (y >= top && y <= bottom) this.addDot(x, Math.floor(y), rgb);
     }
-    const y = found.impacts > 0.1 ? counts(found.impacts) : this.countsEnds[1] - strip / 2;
-    if (y >= this.countsEnds[0]) for (let i = 0; i < 3; i++) this.addDot(x, Math.floor(y), rgb);
+    const [least, most] = this.impacts.ends;
+    const y = found.impacts > 0.1 ? this.impacts.pixel(found.impacts) : most - this.strip / 2;
+    if (y >= least) for (let i = 0; i < 3; i++) this.addDot(x, Math.floor(y), rgb);
   }
 
   /** @param {number} x @param {number} y @param {[number, number, number]} rgb */
   addDot(x, y, [r, g, b]) {
-    const { data } = /** @type {ImageData} */ (this.data);
+    const { data } = this.image;
     for (let dx = 0; dx < this.broad; dx++) {
       for (let dy = 0; dy < this.dot; dy++) {
         const place = 4 * ((y + dy) * this.canvas.width + x + dx);
@@ -112,19 +103,10 @@ export class DotPlate {
       }
     }
   }
-
-  /** Bring the dots onto the canvas. */
-  toCanvas() {
-    if (this.context && this.data) this.context.putImageData(this.data, 0, 0);
-    return this.canvas;
-  }
 }
 
-/** Colours of directions only where both are shown. @param {Theme} theme @param {Diagram} shown @param {"up" | "down"} direction */
-export const laneColour = (theme, { lanes }, direction) => (lanes.length > 1 ? theme[direction] : theme.ink);
-
 /** Frames of both panels. @param {Pen} pen @param {Size} size @param {Theme} theme @param {Axes} axes @param {number} unit of frequency ratios on the axis */
-export function drawFrames(pen, size, theme, axes, unit) {
+function drawFrames(pen, size, theme, axes, unit) {
   const x = { ...axes.x, low: axes.x.low * unit, high: axes.x.high * unit };
   const { gaps, impacts } = panelPlaces(size);
   drawFrame(pen, drawZeroStrip(pen, gaps, theme), theme, { ...x, label: undefined }, axes.gaps);
@@ -148,7 +130,7 @@ function drawLaneLegend(pen, size, theme, { lanes }) {
 }
 
 /** The chosen frequency, and the span that is being dragged. @param {Pen} pen @param {Size} size @param {Theme} theme @param {Axis} axis @param {{eta: number | null, drag: [number, number] | null}} marks */
-export function drawMarks(pen, size, theme, axis, { eta, drag }) {
+function drawMarks(pen, size, theme, axis, { eta, drag }) {
   const { gaps, impacts } = panelPlaces(size);
   const [left, top, width] = gaps;
   const bottom = impacts[1] + impacts[3];
@@ -166,12 +148,13 @@ export function drawMarks(pen, size, theme, axis, { eta, drag }) {
 export class DiagramView {
   /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
-    this.plate = new DotPlate();
+    /** @type {DotPlate | null} */
+    this.plate = null;
     /** @type {Diagram | null} */
     this.diagram = null;
     /** @type {Diagram | null} */
     this.below = null; // shown until the new one has come
-    /** @type {[Diagram, "up" | "down", number][]} */
+    /** @type {[Diagram, Lane, Found][]} */
     this.queue = [];
     this.done = 0; // of the queue
     this.limits = new AxisLimits();
@@ -194,15 +177,18 @@ export class DiagramView {
     this.diagram = diagram;
     this.below = below;
     this.limits = new AxisLimits();
-    for (const one of [below, diagram]) {
-      for (const { found } of one?.lanes ?? []) {
-        found.forEach((response, i) => {
-          const eta = one?.points[i].eta ?? NaN;
-          if (one && response && eta >= diagram.low && eta <= diagram.high) this.limits.include(response, gapUnit(one.points[i], diagram.level));
-        });
-      }
+    for (const [{ points }, , found] of this.knownResponses()) {
+      const point = points[found.index];
+      if (point.eta >= diagram.low && point.eta <= diagram.high) this.limits.include(found, gapUnit(point, diagram.level));
     }
     this.redrawAll();
+  }
+
+  /** What has come of both diagrams. @returns {Generator<[Diagram, Lane, Found]>} */
+  *knownResponses() {
+    for (const diagram of [this.below, this.diagram]) {
+      for (const lane of diagram?.lanes ?? []) for (const found of lane.found) if (found && diagram) yield [diagram, lane, found];
+    }
   }
 
   /** Redraw everything. */
@@ -211,11 +197,11 @@ export class DiagramView {
     this.picture.redraw();
   }
 
-  /** A response has come. @param {"up" | "down"} direction @param {number} index @param {Found} found */
-  addResponse(direction, index, found) {
+  /** A response has come. @param {Lane} lane @param {Found} found */
+  addResponse(lane, found) {
     const diagram = /** @type {Diagram} */ (this.diagram);
-    if (this.limits.include(found, gapUnit(diagram.points[index], diagram.level))) this.stale = true;
-    this.queue.push([diagram, direction, index]);
+    if (this.limits.include(found, gapUnit(diagram.points[found.index], diagram.level))) this.stale = true;
+    this.queue.push([diagram, lane, found]);
     this.picture.redraw();
   }
 
@@ -225,47 +211,36 @@ export class DiagramView {
     this.below = null;
   }
 
-  restartPlate() {
-    this.stale = false;
-    const { points, lanes } = /** @type {Diagram} */ (this.diagram);
-    const count = points.length * lanes.length;
-    this.plate.restart(this.picture.size, window.devicePixelRatio || 1, this.axes, count);
-    this.queue = [];
-    for (const one of [this.below, this.diagram]) {
-      for (const lane of one?.lanes ?? []) {
-        lane.found.forEach((found, i) => {
-          if (found && one) this.queue.push([one, lane.direction, i]);
-        });
-      }
-    }
-    this.done = 0;
-  }
-
   /** @param {Pen} pen @param {Size} size @param {Theme} theme */
   draw(pen, size, theme) {
     if (!this.diagram) return;
-    if (this.stale) this.restartPlate();
-    this.drawQueuedDots(theme, this.diagram);
+    if (this.stale || !this.plate) {
+      this.stale = false;
+      const count = this.diagram.points.length * this.diagram.lanes.length;
+      this.plate = new DotPlate(size, window.devicePixelRatio || 1, this.axes, count);
+      [this.queue, this.done] = [[...this.knownResponses()], 0];
+    }
+    this.drawQueuedDots(this.plate, theme, this.diagram);
     drawLaneLegend(pen, size, theme, this.diagram);
     drawFrames(pen, size, theme, this.axes, ratioUnit(this.diagram.structure, this.diagram.level));
-    pen.image(this.plate.toCanvas(), 0, 0, size.width, size.height);
+    this.plate.context.putImageData(this.plate.image, 0, 0);
+    pen.image(this.plate.canvas, 0, 0, size.width, size.height);
     this.overlay?.(pen, size, theme);
     drawMarks(pen, size, theme, this.axes.x, this.marks);
     if (this.queue.length > this.done) this.picture.redraw();
   }
 
-  /** Put dots on the plate for some milliseconds. @param {Theme} theme @param {Diagram} shown */
-  drawQueuedDots(theme, shown) {
+  /** Put dots on the plate for some milliseconds. @param {DotPlate} plate @param {Theme} theme @param {Diagram} shown */
+  drawQueuedDots(plate, theme, shown) {
     const end = performance.now() + 10;
-    let done = this.done;
-    while (done < this.queue.length && performance.now() < end) {
-      const [diagram, direction, index] = this.queue[done++];
-      const found = diagram.lanes.find((lane) => lane.direction === direction)?.found[index];
-      const point = diagram.points[index];
-      if (found) this.plate.addResponse(point, found, laneColour(theme, shown, direction), gapUnit(point, shown.level));
+    while (this.done < this.queue.length && performance.now() < end) {
+      const [diagram, { direction }, found] = this.queue[this.done++];
+      const point = diagram.points[found.index];
+      // colours of directions only where both are shown
+      const colour = shown.lanes.length > 1 ? theme[direction] : theme.ink;
+      plate.addResponse(point, found, colour, gapUnit(point, shown.level));
     }
-    this.done = done;
-    if (done === this.queue.length) [this.queue, this.done] = [[], 0];
+    if (this.done === this.queue.length) [this.queue, this.done] = [[], 0];
   }
 
   /** Frequency at a place. @param {number} x in CSS pixels from the canvas's left side */

@@ -6,8 +6,6 @@ import { impactCountWords } from "./response_words.js";
 import { Picture } from "./picture.js";
 import { formatNumber } from "./scale.js";
 
-const IDLE = "Not running: press Slowly up.";
-
 const KEPT = 6000; // revolutions of the trace
 const PACE = 60; // ms between two requests
 const STEPS = 1200; // communication steps in each
@@ -24,6 +22,7 @@ export class DrivePanel {
     this.voltage = /** @type {HTMLInputElement} */ (at("voltage"));
     this.bonded = /** @type {HTMLInputElement} */ (at("drive-bonded"));
     this.picture = new Picture(/** @type {HTMLCanvasElement} */ (at("drive")), (pen, size, theme) => this.draw(pen, size, theme));
+    this.idle = at("drive-status").textContent; // what is said before it runs
     this.running = false;
     this.ramp = 0; // sign of the voltage's change
     /** @type {Run | null} */
@@ -45,7 +44,7 @@ export class DrivePanel {
     this.ramp = 0;
     for (const input of [this.voltage, this.bonded]) resetToDefault(input);
     this.forgetRun();
-    this.at("drive-status").textContent = IDLE;
+    this.at("drive-status").textContent = this.idle;
   }
 
   /** Forget the run. */
@@ -70,28 +69,21 @@ export class DrivePanel {
     this.setRunning(true);
   }
 
-  /** A voltage for each of the next steps: what the slider says, or a ramp from it. */
-  nextVoltages() {
-    const { h } = this.start;
+  /** Ask for the next steps, at the slider's voltage or on a ramp from it. */
+  requestSteps() {
     const [low, high] = [Number(this.voltage.min), Number(this.voltage.max)];
     const first = this.voltage.valueAsNumber;
+    const { oscillator, drive, h } = this.start;
     const change = this.ramp * SWEEP * high * h;
-    const list = Array.from({ length: STEPS }, (_, i) => Math.min(Math.max(first + change * i, low), high));
+    const voltages = Array.from({ length: STEPS }, (_, i) => Math.min(Math.max(first + change * i, low), high));
     if (this.ramp) {
-      this.voltage.value = String(list[STEPS - 1] + change);
-      const reached = list[STEPS - 1];
+      const reached = voltages[STEPS - 1];
+      this.voltage.value = String(reached + change);
       if (reached === (this.ramp > 0 ? high : low)) this.setRunning(false);
     }
-    return list;
-  }
-
-  requestSteps() {
-    const bonded = this.bonded.checked ? 1 : 0;
-    const voltages = this.nextVoltages();
-    const { oscillator, drive } = this.start;
     const start = {
       ...this.start,
-      oscillator: { ...oscillator, bonded },
+      oscillator: { ...oscillator, bonded: Number(this.bonded.checked) },
       drive: { ...drive, voltage: voltages[0], speed_start: voltages[0] / drive.motor_constant },
     };
     const order = this.pool.ask("drive", { run: this.state, start, voltages }, ([part]) => this.showSteps(part));

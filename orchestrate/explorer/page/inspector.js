@@ -2,14 +2,7 @@
 
 import { Animation } from "./animation.js";
 import { axisAround } from "./chart.js";
-import {
-  shownColumns,
-  historyChart,
-  motionPictures,
-  phaseChart,
-  sectionChart,
-  spectrumChart,
-} from "./motion_view.js";
+import { shownColumns, historyChart, motionPictures, phaseChart, sectionChart, spectrumChart } from "./motion_view.js";
 import { openingLevelWords } from "./opening.js";
 import { repeatPeriods } from "./response.js";
 import { formatNumber } from "./scale.js";
@@ -61,7 +54,9 @@ export class Inspector {
 
   /** Another motion is to come: the one before is no longer the chosen one. */
   awaitMotion() {
-    this.cancelAll();
+    this.orders.forEach((order) => order.cancel());
+    this.orders = [];
+    this.sound.stop(); // it belongs to the motion before
     Object.assign(this, { found: null, spectra: null, bonded: null, exponent: undefined, section: new Float64Array(0) });
     this.at("exponent").textContent = "…";
     this.setMotionState("coming");
@@ -81,29 +76,11 @@ export class Inspector {
     this.listNumbers({});
   }
 
-  /** The same beam without its delamination, from rest. @param {Point} point */
-  requestUndamaged(point) {
-    if (point.structure.wall) return; // to which nothing can be glued
-    const settings = { transient: 2000, samples: 1, tolerance: 1e-2 };
-    const asked = { point: undamagedPoint(point), start: [0, 0, 0, 0], settings, periods: this.periods, points: POINTS };
-    this.request("motion", asked, ([{ motion }]) => {
-      this.bonded = motion;
-      this.drawMotion();
-    });
-  }
-
   /** @param {string} task @param {unknown} asked @param {(parts: any[]) => void} take @param {boolean} [urgent] */
   request(task, asked, take, urgent) {
     const order = this.pool.ask(task, asked, take, urgent);
     this.orders.push(order);
     return order;
-  }
-
-  /** Call off what is still being computed; what is heard belongs to the motion before. */
-  cancelAll() {
-    this.orders.forEach((order) => order.cancel());
-    this.orders = [];
-    this.sound.stop();
   }
 
   /** @param {{response: Response, motion: Motion}} found */
@@ -112,7 +89,15 @@ export class Inspector {
     this.setMotionState("there");
     this.section = found.response.states;
     const { point } = /** @type {Choice} */ (this.choice);
-    this.requestUndamaged(point);
+    if (!point.structure.wall) {
+      // the same beam without its delamination, from rest; to a wall nothing can be glued
+      const settings = { transient: 2000, samples: 1, tolerance: 1e-2 };
+      const asked = { point: undamagedPoint(point), start: [0, 0, 0, 0], settings, periods: this.periods, points: POINTS };
+      this.request("motion", asked, ([{ motion }]) => {
+        this.bonded = motion;
+        this.drawMotion();
+      });
+    }
     this.request("spectra", { point, start: found.response.end }, (parts) => parts.forEach((part) => this.receiveSpectraOrExponent(part)));
     if (this.sound.wanted) this.playImpacts(this.pitch);
     this.drawMotion();
@@ -137,10 +122,10 @@ export class Inspector {
     const list = this.at("numbers");
     list.querySelectorAll(".told").forEach((row) => row.remove());
     for (const [name, value] of Object.entries(numbers).reverse()) {
-      const row = document.createElement("div");
-      row.className = "told";
+      const row = Object.assign(document.createElement("div"), { className: "told" });
       if (/[ξη]/.test(name)) row.title = this.at(name.includes("ξ") ? "help-xi" : "help-eta").textContent ?? "";
-      row.append(elementWith("dt", name), elementWith("dd", value));
+      const parts = Object.entries({ dt: name, dd: value });
+      row.append(...parts.map(([tag, textContent]) => Object.assign(document.createElement(tag), { textContent })));
       list.prepend(row);
     }
   }
@@ -158,7 +143,11 @@ export class Inspector {
       const look = /** @type {const} */ ({ colour: "soft", label: "undamaged", width: 2, alpha: 0.8 });
       history.series.unshift({ x: turns, y: x1, ...look });
       phase.series.unshift({ x: x1, y: v1, ...look });
-      for (const chart of [history, phase]) widenAxes(chart);
+      for (const chart of [history, phase]) {
+        const curves = chart.series.filter(({ dots }) => !dots);
+        chart.y = axisAround(curves.map(({ y }) => y), chart.y.label ?? "");
+      }
+      phase.x = axisAround(phase.series.map(({ x }) => x), phase.x.label ?? "");
     }
     const words = `at frequency ratio ${formatNumber(point.eta, 6)}`;
     this.pictures.show("history", history, `Time histories of both masses ${words}: ${motion.impactTime.length} impacts in ${this.periods} periods, permanent contact in ${history.spans?.length ?? 0} spans`);
@@ -226,17 +215,3 @@ export class Inspector {
 
 /** The same without its delamination. @param {Point} point @returns {Point} */
 const undamagedPoint = (point) => ({ ...point, structure: { ...point.structure, bonded: 1 } });
-
-/** Let the axes of a chart hold all of its curves; time stays as it is. @param {Chart} chart */
-function widenAxes(chart) {
-  const curves = chart.series.filter(({ dots }) => !dots);
-  chart.y = axisAround(curves.map(({ y }) => y), chart.y.label ?? "");
-  if (!chart.spans) chart.x = axisAround(curves.map(({ x }) => x), chart.x.label ?? "");
-}
-
-/** @param {string} tag @param {string} text */
-function elementWith(tag, text) {
-  const element = document.createElement(tag);
-  element.textContent = text;
-  return element;
-}

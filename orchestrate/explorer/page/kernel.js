@@ -45,6 +45,21 @@ export class Library {
     const type = { u32: Uint32Array, i32: Int32Array, f64: Float64Array, u8: Uint8Array }[kind];
     return new type(this.memory.buffer, address, count);
   }
+
+  /** Call with arrays in the memory, which are freed then. @template T @param {(buffers: Buffers) => T} run @returns {T} */
+  withBuffers(run) {
+    const buffers = new Buffers(this);
+    try {
+      return run(buffers);
+    } finally {
+      buffers.free();
+    }
+  }
+
+  /** Numbers that have come. @param {number} address @param {number} count */
+  copyNumbers(address, count) {
+    return new Float64Array(/** @type {Float64Array} */ (this.viewMemory("f64", address, count)));
+  }
 }
 
 /** Arrays and structures of C in a library's memory, freed together. */
@@ -167,9 +182,7 @@ export class Oscillator {
 
   /** Begin at phase 0. @param {Point} point @param {Iterable<number>} start */
   initialize(point, start) {
-    const buffers = new Buffers(this.library);
-    const begun = this.library.calls.begin(this.own, this.responseTask(buffers, point, start, {}), 0);
-    buffers.free();
+    const begun = this.library.withBuffers((buffers) => this.library.calls.begin(this.own, this.responseTask(buffers, point, start, {}), 0));
     if (!begun) throw new Error(this.library.lastMessage());
   }
 
@@ -193,7 +206,7 @@ export class Oscillator {
       }
       const [memory, amplitudes] = [library.calls.spectrum_size(count), count / 2 + 1].map((size) => buffers.array("f64", size));
       library.calls.acceleration_spectrum(states, 4, count, periods, point.frequency, point.amplitude, memory, amplitudes);
-      const amplitude = new Float64Array(library.viewMemory("f64", amplitudes, highest * periods + 1));
+      const amplitude = library.copyNumbers(amplitudes, highest * periods + 1);
       return { order: Float64Array.from(amplitude, (_, line) => line / periods), amplitude };
     } finally {
       buffers.free();
@@ -220,14 +233,12 @@ export class Oscillator {
       const asked = { samples, tolerance, decides: Number(decides), ...more, ...places };
       const task = this.responseTask(buffers, point, start, asked);
       yield* this.loop("respond", this.own, task, buffers.newStructure("ResponseProgress", {}), WORK);
-      /** @param {number} address @param {number} count */
-      const numbers = (address, count) => new Float64Array(this.library.viewMemory("f64", address, count));
       const counts = this.library.viewMemory("i32", places.counts, loops.counts.length);
       return {
-        states: numbers(places.states, 4 * samples),
-        largest: numbers(places.largest, 1)[0],
-        impacts: numbers(places.impacts, 1)[0],
-        end: Array.from(numbers(places.ends, 4)),
+        states: this.library.copyNumbers(places.states, 4 * samples),
+        largest: this.library.copyNumbers(places.largest, 1)[0],
+        impacts: this.library.copyNumbers(places.impacts, 1)[0],
+        end: Array.from(this.library.copyNumbers(places.ends, 4)),
         counts: Object.fromEntries(loops.counts.map((name, i) => [name, counts[i]])),
       };
     } finally {
@@ -277,7 +288,7 @@ export class Oscillator {
       }
       take();
       return {
-        rows: new Float64Array(this.library.viewMemory("f64", places.rows, outputs.length * times.length)),
+        rows: this.library.copyNumbers(places.rows, outputs.length * times.length),
         contact: new Uint8Array(this.library.viewMemory("u8", places.contacts, times.length)),
         impacts,
       };

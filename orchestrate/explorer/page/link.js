@@ -1,6 +1,6 @@
 /** The view as a link: what is behind the # restores it. */
 
-import { LEVELS, PAPER } from "./excitation.js";
+import { isSameLevel, LEVELS, PAPER } from "./excitation.js";
 
 /**
  * @typedef {{structure: Structure, level: Level, low: number, high: number,
@@ -18,7 +18,7 @@ export function linkFragment({ structure, level, low, high, direction, eta, star
   for (const [name, value] of Object.entries(structure)) {
     if (value !== usual.structure[/** @type {keyof Structure} */ (name)]) words.set(name, String(value));
   }
-  if (level.unit !== usual.level.unit || level.value !== usual.level.value) words.set(level.unit, String(level.value));
+  if (!isSameLevel(level, usual.level)) words.set(level.unit, String(level.value));
   if (eta !== null) words.set("eta", String(eta));
   if (start) words.set("start", start.join(","));
   return `#${words}`;

@@ -1,6 +1,5 @@
 /** What the compiled loops say of a structure and of states of it, at once. */
 
-import { Buffers } from "./kernel.js";
 import { lengthOf, omegaOf } from "./structure.js";
 
 /** @type {Library} of the oscillator, of this thread */
@@ -9,28 +8,10 @@ let library;
 /** Say, once, whom to ask. @param {Library} compiled */
 export const useLibrary = (compiled) => (library = compiled);
 
-/**
- * Call a function of the library with arrays in its memory.
- * @template T
- * @param {(buffers: Buffers, calls: Library["calls"]) => T} run
- * @returns {T}
- */
-function withBuffers(run) {
-  const buffers = new Buffers(library);
-  try {
-    return run(buffers, library.calls);
-  } finally {
-    buffers.free();
-  }
-}
-
-/** Numbers that have come. @param {number} address @param {number} count */
-const copyNumbers = (address, count) => new Float64Array(library.viewMemory("f64", address, count));
-
 /** A structure under an excitation: its numbers, and by name what follows from them. @param {Point} point @returns {Record<string, number>} */
 export function traitsOf(point) {
   const { traits } = library.loops;
-  const row = withBuffers((buffers) => copyNumbers(buffers.traitsRow(point), traits.length));
+  const row = library.withBuffers((buffers) => library.copyNumbers(buffers.traitsRow(point), traits.length));
   return Object.fromEntries(traits.map((name, i) => [name, row[i]]));
 }
 
@@ -38,19 +19,19 @@ export function traitsOf(point) {
 export function gapsOf(states, point) {
   const count = states.length / 4;
   const { gap_offset } = traitsOf(point);
-  return withBuffers((buffers, calls) => {
+  return library.withBuffers((buffers) => {
     const gaps = buffers.array("f64", count);
-    calls.find_gaps(buffers.array("f64", states), count, buffers.array("f64", [gap_offset]), 1, gaps);
-    return copyNumbers(gaps, count);
+    library.calls.find_gaps(buffers.array("f64", states), count, buffers.array("f64", [gap_offset]), 1, gaps);
+    return library.copyNumbers(gaps, count);
   });
 }
 
 /** Absolute accelerations of both masses. @param {Motion} motion @param {Point} point */
 export function accelerationsOf({ states, contact }, point) {
-  return withBuffers((buffers, calls) => {
+  return library.withBuffers((buffers) => {
     const found = buffers.array("f64", 2 * contact.length);
-    calls.find_accelerations(buffers.array("f64", states), contact.length, buffers.traitsRow(point), buffers.array("u8", contact), found);
-    return copyNumbers(found, 2 * contact.length);
+    library.calls.find_accelerations(buffers.array("f64", states), contact.length, buffers.traitsRow(point), buffers.array("u8", contact), found);
+    return library.copyNumbers(found, 2 * contact.length);
   });
 }
 
@@ -58,18 +39,18 @@ export function accelerationsOf({ states, contact }, point) {
 export function carryState(state, from, to) {
   const length = lengthOf(to) / lengthOf(from);
   const speed = (length * omegaOf(to.structure)) / omegaOf(from.structure);
-  return withBuffers((buffers, calls) => {
+  return library.withBuffers((buffers) => {
     const like = buffers.array("f64", 4);
-    calls.carry_state(buffers.array("f64", state), buffers.traitsRow(from), buffers.traitsRow(to), length, speed, like);
-    return Array.from(copyNumbers(like, 4));
+    library.calls.carry_state(buffers.array("f64", state), buffers.traitsRow(from), buffers.traitsRow(to), length, speed, like);
+    return Array.from(library.copyNumbers(like, 4));
   });
 }
 
 /** How near states of a motion come to a state, over the motion's size. @param {Float64Array} states @param {number} frequency @param {number} gap its largest, m @param {ArrayLike<number>} state */
 export function distanceToState(states, frequency, gap, state) {
   const count = states.length / 4;
-  return withBuffers((buffers, calls) => {
+  return library.withBuffers((buffers) => {
     const [one, other] = [states, state].map((numbers) => buffers.array("f64", numbers));
-    return calls.nearest_state(one, count, frequency, gap, other, buffers.array("f64", calls.memory_size(count)));
+    return library.calls.nearest_state(one, count, frequency, gap, other, buffers.array("f64", library.calls.memory_size(count)));
   });
 }

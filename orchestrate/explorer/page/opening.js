@@ -22,12 +22,10 @@ const isBeyondTheory = ({ structure: { wall, stroke, box_acceleration, force1, f
 /** Where a complete diagram's beam opens, or that it does so unseen. @param {Diagram} diagram */
 export function openingWords(diagram) {
   const ranges = traitsOf(diagram.points[0]).gap_offset < 0 ? `. The halves open ${openingRanges(diagram)}` : "";
-  return ranges + (opensUnseen(diagram) ? ". A dot at 0 where there are impacts: they open at other moments of the period" : "");
+  // whether a response knocks though all of its samples are shut
+  const unseen = diagram.lanes.some(({ found }) => found.some((one) => one && one.impacts > 0 && one.gaps.every((gap) => gap <= 0)));
+  return ranges + (unseen ? ". A dot at 0 where there are impacts: they open at other moments of the period" : "");
 }
-
-/** Whether a response knocks though all of its samples are shut: it opens between them. @param {Diagram} diagram */
-const opensUnseen = ({ lanes }) =>
-  lanes.some(({ found }) => found.some((one) => one && one.impacts > 0 && one.gaps.every((gap) => gap <= 0)));
 
 /** At which frequencies of a diagram the halves open, in words. @param {Diagram} diagram */
 function openingRanges({ points, lanes, structure, level }) {

@@ -41,18 +41,12 @@ export async function loadPayload() {
  */
 function shippedDiagram({ structure, settings, directions, count, low, high, level: [unit, value] }, data) {
   if (!count) return null;
-  const points = Array.from({ length: count }, (_, i) => ({
-    structure,
-    eta: data[i],
-    frequency: data[count + i],
-    amplitude: data[2 * count + i],
-  }));
-  const lanes = directions.map((direction, i) => ({
-    direction,
-    found: new Array(count),
-    starts: data.subarray((3 + 4 * i) * count, (7 + 4 * i) * count),
-    from: null,
-  }));
+  const [etas, frequencies, amplitudes] = [0, 1, 2].map((part) => data.subarray(part * count, (part + 1) * count));
+  const points = Array.from(etas, (eta, i) => ({ structure, eta, frequency: frequencies[i], amplitude: amplitudes[i] }));
+  const lanes = directions.map((direction, i) => {
+    const starts = data.subarray((3 + 4 * i) * count, (7 + 4 * i) * count);
+    return { direction, found: new Array(count), starts, from: null };
+  });
   const direction = directions.length === 2 ? /** @type {const} */ ("both") : directions[0];
   return { structure, direction, level: { unit, value }, low, high, points, lanes, settings };
 }

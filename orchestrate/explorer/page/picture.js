@@ -58,30 +58,33 @@ export class Picture {
 
   /** As it is on the screen, on paper, twice as fine where that is coarse, with lines below. @param {string} name of the file @param {string[]} caption */
   savePng(name, caption) {
-    const { width, height } = this.size;
     const density = Math.max(FINE, window.devicePixelRatio || 1);
-    const lines = wrapLines(caption, width);
     const sheet = document.createElement("canvas");
-    Object.assign(sheet, { width: Math.round(width * density), height: Math.round((height + captionHeight(lines)) * density) });
-    const context = /** @type {CanvasRenderingContext2D} */ (sheet.getContext("2d"));
-    const theme = currentTheme();
-    context.fillStyle = theme.paper;
-    context.fillRect(0, 0, sheet.width, sheet.height);
-    context.setTransform(density, 0, 0, density, 0, 0);
-    const pen = new CanvasPen(context);
-    this.draw(pen, { width, height }, theme);
-    drawCaption(pen, lines, height, theme);
+    this.drawWithCaption(caption, (width, height, { paper }) => {
+      Object.assign(sheet, { width: Math.round(width * density), height: Math.round(height * density) });
+      const context = /** @type {CanvasRenderingContext2D} */ (sheet.getContext("2d"));
+      context.fillStyle = paper;
+      context.fillRect(0, 0, sheet.width, sheet.height);
+      context.setTransform(density, 0, 0, density, 0, 0);
+      return new CanvasPen(context);
+    });
     sheet.toBlob((blob) => blob && saveFile(`${name}.png`, blob));
   }
 
   /** @param {string} name of the file @param {string[]} caption */
   saveSvg(name, caption) {
-    const { width, height } = this.size;
-    const theme = currentTheme();
-    const lines = wrapLines(caption, width);
-    const pen = new SvgPen(width, height + captionHeight(lines), theme.paper);
-    this.draw(pen, { width, height }, theme);
-    drawCaption(pen, lines, height, theme);
+    const pen = this.drawWithCaption(caption, (width, height, { paper }) => new SvgPen(width, height, paper));
     saveFile(`${name}.svg`, new Blob([pen.toSvg()], { type: "image/svg+xml" }));
+  }
+
+  /** Draw on a sheet of another pen, with lines below. @template {Pen} T @param {string[]} caption @param {(width: number, height: number, theme: Theme) => T} penOf a sheet */
+  drawWithCaption(caption, penOf) {
+    const { size } = this;
+    const lines = wrapLines(caption, size.width);
+    const theme = currentTheme();
+    const pen = penOf(size.width, size.height + captionHeight(lines), theme);
+    this.draw(pen, size, theme);
+    drawCaption(pen, lines, size.height, theme);
+    return pen;
   }
 }

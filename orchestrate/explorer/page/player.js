@@ -4,8 +4,6 @@ import { isInHertz } from "./excitation.js";
 import { watchNumber, resetToDefault } from "./field.js";
 import { formatNumber } from "./scale.js";
 
-const FIELDS = ["speed", "pitch", "periods", "beside"];
-
 export class Player {
   /**
    * @param {(id: string) => HTMLElement} at
@@ -24,7 +22,10 @@ export class Player {
     at("listen").addEventListener("click", () => this.toggleSound());
     at("beside").addEventListener("change", () => inspector.drawMotion());
     at("speed").addEventListener("input", () => this.setSpeed());
-    watchNumber(this.input("periods"), (periods) => this.setPeriods(periods));
+    watchNumber(this.input("periods"), (periods) => {
+      inspector.periods = Math.round(periods);
+      if (inspector.choice) inspector.showMotion(inspector.choice);
+    });
     watchNumber(this.input("pitch"), (pitch) => {
       if (inspector.sound.wanted) inspector.playImpacts(pitch);
     });
@@ -32,7 +33,7 @@ export class Player {
 
   /** All fields as when the page was opened; a motion that is chosen next is shown so. */
   reset() {
-    for (const id of FIELDS) resetToDefault(this.input(id));
+    for (const id of ["speed", "pitch", "periods", "beside"]) resetToDefault(this.input(id));
     this.inspector.periods = this.input("periods").valueAsNumber;
     this.inspector.sound.silence();
     this.setSpeed();
@@ -79,17 +80,11 @@ export class Player {
   /** How fast the motion is seen: against the true one, where there are seconds. */
   showSpeed() {
     const { animation, choice } = this.inspector;
-    const turns = `${formatNumber(animation.speed, 2)} periods a second`;
-    this.at("speed-words").textContent =
-      choice && isInHertz(choice.level) ? slownessWords(choice.point.frequency / (2 * Math.PI) / animation.speed) : turns;
-  }
-
-  /** @param {number} periods */
-  setPeriods(periods) {
-    this.inspector.periods = Math.round(periods);
-    if (this.inspector.choice) this.inspector.showMotion(this.inspector.choice);
+    let words = `${formatNumber(animation.speed, 2)} periods a second`;
+    if (choice && isInHertz(choice.level)) {
+      const times = choice.point.frequency / (2 * Math.PI) / animation.speed;
+      words = times >= 1 ? `${formatNumber(times, 2)} times slowed` : `${formatNumber(1 / times, 2)} times faster`;
+    }
+    this.at("speed-words").textContent = words;
   }
 }
-
-/** @param {number} times */
-const slownessWords = (times) => (times >= 1 ? `${formatNumber(times, 2)} times slowed` : `${formatNumber(1 / times, 2)} times faster`);

@@ -2,7 +2,7 @@
 
 import { emptyDiagram } from "./diagram.js";
 import { DiagramView } from "./diagram_view.js";
-import { requestChain, requestReplay } from "./requests.js";
+import { requestDiagram } from "./requests.js";
 import { USUAL } from "./response.js";
 import { isSameLevel } from "./excitation.js";
 import { isSameStructure } from "./structure.js";
@@ -48,14 +48,17 @@ export class Regions {
 
   /** Look at a region of a structure's responses. @param {Structure} structure @param {Region} region @param {boolean} [quick] at low resolution, in place of the last quick one */
   open(structure, region, quick = false) {
-    const { shipped } = this;
-    if (shipped && isOfSameBeam(shipped, structure, region) && coversWhole(shipped, region)) return this.showNext(shipped, null, false);
+    const { shipped, whole } = this;
+    const { low, high, direction } = region;
+    const covered = shipped && isOfSameBeam(shipped, structure, region) && low <= shipped.low && high >= shipped.high;
+    if (covered && shipped.direction === direction) return this.showNext(shipped, null, false);
     const parent = this.diagram && isOfSameBeam(this.diagram, structure, region) ? this.diagramToStartFrom(region) : null;
-    const settings = quick ? QUICK : USUAL;
-    const diagram = emptyDiagram(structure, widenedRegion(region), quick ? 160 : this.count, settings);
+    const middle = (low + high) / 2;
+    const half = Math.max((high - low) / 2, LEAST / 2);
+    const widened = { ...region, low: Math.max(middle - half, LEAST), high: middle + half };
+    const diagram = emptyDiagram(structure, widened, quick ? 160 : this.count, quick ? QUICK : USUAL);
     this.showNext(diagram, parent, quick);
-    const { low, high } = this.whole;
-    this.coarse = !quick && !shipped && region.low === low && region.high === high ? diagram : null;
+    this.coarse = !quick && !shipped && low === whole.low && high === whole.high ? diagram : null;
   }
 
   /** The whole again, as fine as the paper's Figure 6. @param {Diagram} diagram */
@@ -91,9 +94,8 @@ export class Regions {
     this.complete = false;
     this.view.showDiagram(diagram, parent && parent !== diagram ? parent : null);
     /** @type {Take} */
-    const take = (lane, found) => this.view.addResponse(lane.direction, found.index, found);
-    const replayed = diagram.lanes.every((lane) => lane.starts);
-    const order = replayed ? requestReplay(this.pool, diagram, take) : requestChain(this.pool, diagram, parent, take);
+    const take = (lane, found) => this.view.addResponse(lane, found);
+    const order = requestDiagram(this.pool, diagram, parent, take);
     this.order = order;
     void order.done.then(() => {
       if (this.order !== order) return;
@@ -133,16 +135,4 @@ export class Regions {
 /** Whether a diagram is of a structure that is shaken as a region says. @param {Diagram} diagram @param {Structure} structure @param {Region} region */
 function isOfSameBeam(diagram, structure, { level }) {
   return isSameStructure(diagram.structure, structure) && isSameLevel(diagram.level, level);
-}
-
-/** Whether a region is the whole of a diagram. @param {Diagram} diagram @param {Region} region */
-function coversWhole(diagram, { low, high, direction }) {
-  return diagram.direction === direction && low <= diagram.low && high >= diagram.high;
-}
-
-/** @param {Region} region @returns {Region} */
-function widenedRegion({ low, high, direction, level }) {
-  const middle = (low + high) / 2;
-  const half = Math.max((high - low) / 2, LEAST / 2);
-  return { low: Math.max(middle - half, LEAST), high: middle + half, direction, level };
 }

@@ -1,7 +1,7 @@
 /** What is asked of the workers, and in which order. */
 
 import { startOfResponse, startOfChain } from "./diagram.js";
-import { columnsAt } from "./structure.js";
+import { joinOrders } from "./worker_pool.js";
 
 /** @typedef {(lane: Lane, found: Found) => void} Take */
 
@@ -16,50 +16,39 @@ export function indicesCoarseFirst(count) {
   return found;
 }
 
-/** Every `size`-th of a list, from each of the first on. @template T @param {T[]} list @param {number} size */
+/** Every `size`-th of a list, from each of the first on; no empty shares. @template T @param {T[]} list @param {number} size */
 export function dealOut(list, size) {
-  return Array.from({ length: size }, (_, first) => list.filter((_, i) => i % size === first));
+  return Array.from({ length: Math.min(size, list.length) }, (_, first) => list.filter((_, i) => i % size === first));
 }
 
-/** Compute what a diagram still lacks, each response from where it is known to begin. @param {WorkerPool} pool @param {Diagram} diagram @param {Take} take @returns {Order} */
-export function requestReplay(pool, diagram, take) {
-  const orders = diagram.lanes.map((lane) => {
-    const missing = indicesCoarseFirst(diagram.points.length).filter((i) => !lane.found[i]);
-    const groups = dealOut(missing, pool.workers.length).filter((indices) => indices.length);
-    const asked = groups.map((indices) => ({
-      indices,
-      columns: columnsAt(diagram.points, indices),
-      starts: Float64Array.from(indices.flatMap((i) => startOfResponse(lane, i) ?? [])),
-      settings: diagram.settings,
-    }));
-    return pool.askAll("replay", asked, (parts) => parts.forEach((part) => enterResponse(lane, part, take)));
+/**
+ * Compute what a diagram lacks: each response from where it is known to begin, else from the end of the one before.
+ * @param {WorkerPool} pool
+ * @param {Diagram} diagram
+ * @param {Diagram | null} parent where the first may begin from
+ * @param {Take} take
+ */
+export function requestDiagram(pool, diagram, parent, take) {
+  const { points, lanes, settings } = diagram;
+  const orders = lanes.map((lane) => {
+    /** @param {number[]} indices @param {number[][]} starts of each, or of the first */
+    const share = (indices, starts) => ({ indices, points: indices.map((i) => points[i]), starts: Float64Array.from(starts.flat()), settings });
+    const shares = [];
+    if (lane.starts) {
+      const missing = indicesCoarseFirst(points.length).filter((i) => !lane.found[i]);
+      for (const indices of dealOut(missing, pool.workers.length)) shares.push(share(indices, indices.map((i) => startOfResponse(lane, i) ?? [])));
+    } else {
+      const indices = points.map((_, i) => i);
+      if (lane.direction === "down") indices.reverse();
+      lane.from = startOfChain(parent, points[indices[0]], lane.direction);
+      shares.push(share(indices, [lane.from]));
+    }
+    return pool.askAll("responses", shares, (parts) => {
+      for (const found of parts) {
+        lane.found[found.index] = found;
+        take(lane, found);
+      }
+    });
   });
   return joinOrders(orders);
-}
-
-/** Compute a diagram, each response from the end of the last. @param {WorkerPool} pool @param {Diagram} diagram @param {Diagram | null} parent where the first may begin from @param {Take} take @returns {Order} */
-export function requestChain(pool, diagram, parent, take) {
-  const orders = diagram.lanes.map((lane) => {
-    const indices = diagram.points.map((_, i) => i);
-    if (lane.direction === "down") indices.reverse();
-    const columns = columnsAt(diagram.points, indices);
-    lane.from = startOfChain(parent, diagram.points[indices[0]], lane.direction);
-    const asked = { indices, columns, start: lane.from, settings: diagram.settings };
-    return pool.ask("chain", asked, (parts) => parts.forEach((part) => enterResponse(lane, part, take)));
-  });
-  return joinOrders(orders);
-}
-
-/** @param {Lane} lane @param {Found} found @param {Take} take */
-function enterResponse(lane, found, take) {
-  lane.found[found.index] = found;
-  take(lane, found);
-}
-
-/** @param {Order[]} orders @returns {Order} */
-function joinOrders(orders) {
-  return {
-    cancel: () => orders.forEach((order) => order.cancel()),
-    done: Promise.all(orders.map((order) => order.done)).then(() => {}),
-  };
 }

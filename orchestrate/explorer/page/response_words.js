@@ -11,7 +11,6 @@ import { axisScale, axisWords } from "./units.js";
  */
 
 const DIGITS = 3; // of a mean number of impacts, wherever it is shown
-const UNDECIDED_MOTION = "Nearly repeats, or is still settling: undecided here";
 
 /** What an exponent says. @param {Exponent} exponent @returns {Kind} */
 export const exponentKind = ({ verdict }) => (verdict > 0 ? "chaotic" : verdict < 0 ? "converging" : "undecided");
@@ -97,5 +96,6 @@ function unrepeatedWords({ decided, multiplicity, gaps }, exponent) {
   const guess = multiplicity ? `, perhaps after ${periodCountWords(multiplicity)}` : "";
   const undecided = `Undecided whether it repeats${guess}`;
   if (!exponent) return decided === UNDECIDED ? undecided : `Irregular: does not repeat in ${gaps.length} periods`;
-  return { chaotic: "Chaos: never repeats", converging: `${undecided}: it converges`, undecided: UNDECIDED_MOTION }[exponentKind(exponent)];
+  const nearly = "Nearly repeats, or is still settling: undecided here";
+  return { chaotic: "Chaos: never repeats", converging: `${undecided}: it converges`, undecided: nearly }[exponentKind(exponent)];
 }

@@ -18,12 +18,6 @@ const TITLES = {
   drive: "A weak motor shakes the box: its speed over its voltage",
 };
 
-/** What computed a picture: the page, or the sweep that it came with. @param {boolean} swept */
-function madeBy(swept) {
-  const names = swept ? ["source", "swept"] : ["source"];
-  return names.flatMap((name) => document.getElementById(name)?.textContent ?? []).join("; ");
-}
-
 /** Save a picture or its numbers; says so. @param {string} words what, and the kind of file @param {App} page */
 export function saveShown(words, { eta, regions, inspector, basin, drive }) {
   const [name, kind] = words.split(".");
@@ -36,7 +30,8 @@ export function saveShown(words, { eta, regions, inspector, basin, drive }) {
     const caption = [TITLES[name]];
     if (name === "drive") caption.push("A lighter beam, the parameter set quick");
     else if (choice) caption.push(beamWords(choice.point, choice.level));
-    caption.push(madeBy(name === "diagram" && regions.diagram === regions.shipped));
+    const swept = name === "diagram" && regions.diagram === regions.shipped ? ["swept"] : []; // the sweep that it came with
+    caption.push(["source", ...swept].flatMap((id) => document.getElementById(id)?.textContent ?? []).join("; "));
     if (kind === "png") shown[name].savePng(file, caption);
     else shown[name].saveSvg(file, caption);
     return `${file}.${kind} saved`;

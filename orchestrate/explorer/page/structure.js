@@ -113,25 +113,6 @@ export function rescaled(s, units, omega, mass, length, digits) {
   return /** @type {Structure} */ (changed);
 }
 
-/**
- * Points of one structure as columns, which reach a worker faster.
- * @typedef {{structure: Structure, eta: Float64Array, frequency: Float64Array,
- *   amplitude: Float64Array}} Columns
- */
-
-/** @param {Point[]} points @param {number[]} indices @returns {Columns} */
-export function columnsAt(points, indices) {
-  /** @param {"eta" | "frequency" | "amplitude"} name */
-  const column = (name) => Float64Array.from(indices, (i) => points[i][name]);
-  const { structure } = points[indices[0]];
-  return { structure, eta: column("eta"), frequency: column("frequency"), amplitude: column("amplitude") };
-}
-
-/** @param {Columns} columns @param {number} i @returns {Point} */
-export function pointAtIndex({ structure, eta, frequency, amplitude }, i) {
-  return { structure, eta: eta[i], frequency: frequency[i], amplitude: amplitude[i] };
-}
-
 /** One period of the box, s (22). @param {Point} point */
 export function periodOf(point) {
   return (2 * Math.PI) / point.frequency;

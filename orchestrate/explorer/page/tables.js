@@ -37,9 +37,7 @@ export function impactsCsv(motion) {
 
 /** Stroboscopic samples. @param {ArrayLike<number>} states */
 export function sectionCsv(states) {
-  const rows = Array.from({ length: states.length / 4 }, (_, i) =>
-    [0, 1, 2, 3].map((part) => states[4 * i + part]),
-  );
+  const rows = Array.from({ length: states.length / 4 }, (_, i) => [0, 1, 2, 3].map((part) => states[4 * i + part]));
   return { head: ["x1", "x2", "v1", "v2"], rows };
 }
 

@@ -5,42 +5,27 @@ import { Coupled } from "./coupled.js";
 import { Oscillator } from "./kernel.js";
 import { recordMotion } from "./motion.js";
 import { computeResponse } from "./response.js";
-import { periodOf, pointAtIndex } from "./structure.js";
+import { periodOf } from "./structure.js";
 import { waveform } from "./waveform.js";
-
-/** @typedef {import("./response.js").Response} Response */
 
 const REST = [0, 0, 0, 0];
 const SPAN = { periods: 64, points: 1024, highest: 20 };
 
 /**
- * Responses at given starts.
+ * Responses at points.
  * @param {Oscillator} instance
- * @param {{columns: Columns, starts: Float64Array, indices: number[], settings: Settings}} asked
+ * @param {{points: Point[], starts: Float64Array, indices: number[], settings: Settings}} asked
+ *   `starts`: of each, or of the first, and each other from the end of the one before
  */
-function* replayResponses(instance, { columns, starts, indices, settings }) {
+function* computeResponses(instance, { points, starts, indices, settings }) {
+  /** @type {Iterable<number>} */
+  let start = [];
   for (let i = 0; i < indices.length; i++) {
-    const start = starts.subarray(4 * i, 4 * i + 4);
-    yield answerOf(indices[i], yield* computeResponse(instance, pointAtIndex(columns, i), start, settings));
-  }
-}
-
-/**
- * Responses, each from the end of the last.
- * @param {Oscillator} instance
- * @param {{columns: Columns, indices: number[], start: number[], settings: Settings}} asked
- */
-function* chainResponses(instance, { columns, indices, start, settings }) {
-  for (let i = 0; i < indices.length; i++) {
-    const found = yield* computeResponse(instance, pointAtIndex(columns, i), start, settings);
+    if (4 * i < starts.length) start = starts.subarray(4 * i, 4 * i + 4);
+    const { states, ...found } = yield* computeResponse(instance, points[i], start, settings);
     start = found.end;
-    yield answerOf(indices[i], found);
+    yield { index: indices[i], ...found };
   }
-}
-
-/** @param {number} index @param {Response} found */
-function answerOf(index, { gaps, peak, impacts, contact, multiplicity, decided, start, end }) {
-  return { index, gaps, peak, impacts, contact, multiplicity, decided, start, end };
 }
 
 /**
@@ -94,9 +79,8 @@ function* computeSpectraAndExponent(instance, { point, start }) {
   if (point.structure.wall) yield { delaminated, bonded: null }; // nothing can be glued to it
   else {
     const glued = { ...point, structure: { ...point.structure, bonded: 1 } };
-    const settled = yield* computeResponse(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 }, false);
-    const bonded = yield* instance.spectrum(glued, 2001, SPAN);
-    yield { delaminated, bonded, bondedState: settled.end };
+    yield* computeResponse(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 }, false);
+    yield { delaminated, bonded: yield* instance.spectrum(glued, 2001, SPAN) };
   }
   yield { exponent: yield* withStoppingInstance(instance, (own) => own.exponent(point, start)) };
 }
@@ -140,7 +124,7 @@ function* computeBasin(instance, { point, plane, cells }) {
 
 /** @type {Record<string, (instance: Oscillator, asked: any) => Generator<unknown>>} */
 const TASKS = {
-  ...{ replay: replayResponses, chain: chainResponses, motion: computeMotion, section: computeSection },
+  ...{ responses: computeResponses, motion: computeMotion, section: computeSection },
   ...{ spectra: computeSpectraAndExponent, sound: computeSound, drive: runDrive, basin: computeBasin },
 };
 

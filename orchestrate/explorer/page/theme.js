@@ -1,25 +1,12 @@
 /** Colours of the pictures: those of the style sheet, light or dark. */
 
-/** @typedef {Record<"paper" | "ink" | "soft" | "grid" | "one" | "two" | "hit" | "contact" | "mark" | "up" | "down", string>} Theme */
+const NAMES = /** @type {const} */ (["paper", "ink", "soft", "grid", "one", "two", "hit", "contact", "mark", "up", "down"]);
 
-/** @returns {Theme} */
+/** @typedef {Record<typeof NAMES[number], string>} Theme */
+
 export function currentTheme() {
   const style = getComputedStyle(document.documentElement);
-  /** @param {string} name */
-  const colour = (name) => style.getPropertyValue(`--${name}`).trim();
-  return {
-    paper: colour("paper"),
-    ink: colour("ink"),
-    soft: colour("soft"),
-    grid: colour("grid"),
-    one: colour("one"),
-    two: colour("two"),
-    hit: colour("hit"),
-    contact: colour("contact"),
-    mark: colour("mark"),
-    up: colour("up"),
-    down: colour("down"),
-  };
+  return /** @type {Theme} */ (Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()])));
 }
 
 /** Red, green and blue of a colour `#rrggbb`. @param {string} colour @returns {[number, number, number]} */

@@ -6,7 +6,6 @@ type Attractor = import("./basin.js").Attractor;
 type Axis = import("./scale.js").Axis;
 type Chart = import("./chart.js").Chart;
 type Choice = import("./inspector.js").Choice;
-type Columns = import("./structure.js").Columns;
 type Compiled = import("./kernel.js").Compiled;
 type Diagram = import("./diagram.js").Diagram;
 type DiagramView = import("./diagram_view.js").DiagramView;

@@ -61,18 +61,16 @@ export class WorkerPool {
     return { cancel, done };
   }
 
-  /**
-   * Have several tasks computed as one.
-   * @param {string} task
-   * @param {unknown[]} shares
-   * @param {(parts: any[]) => void} onparts
-   * @returns {Order}
-   */
+  /** Have several tasks computed as one. @param {string} task @param {unknown[]} shares @param {(parts: any[]) => void} onparts */
   askAll(task, shares, onparts) {
-    const orders = shares.map((asked) => this.ask(task, asked, onparts));
-    return {
-      cancel: () => orders.forEach((order) => order.cancel()),
-      done: Promise.all(orders.map((order) => order.done)).then(() => {}),
-    };
+    return joinOrders(shares.map((asked) => this.ask(task, asked, onparts)));
   }
+}
+
+/** Several orders as one. @param {Order[]} orders @returns {Order} */
+export function joinOrders(orders) {
+  return {
+    cancel: () => orders.forEach((order) => order.cancel()),
+    done: Promise.all(orders.map((order) => order.done)).then(() => {}),
+  };
 }

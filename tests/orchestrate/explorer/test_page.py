@@ -17,42 +17,22 @@ DIAGRAM = "explorer.regions.diagram"
 MOTION = "explorer.inspector.found.motion"
 
 
-def gaps(browser, lane=0):
-    """Samples of all responses of the diagram, a row each."""
-    found = browser.numbers(f"{DIAGRAM}.lanes[{lane}].found.flatMap((one) => Array.from(one.gaps))")
-    return found.reshape(browser.run(f"return {DIAGRAM}.points.length"), -1)
-
-
-def etas(browser):
-    return browser.numbers(f"{DIAGRAM}.points.map((point) => point.eta)")
-
-
 def test_every_response_has_the_samples_of_the_file_to_the_last_bit(browser, swept):
     assert swept.sizes["eta"] > 50 and int((swept.multiplicity == 0).sum()) > 3
-    assert np.array_equal(etas(browser), swept.eta.values)
-    assert gaps(browser).tobytes() == swept.xi_rel.values.tobytes()
-    found = f"{DIAGRAM}.lanes[0].found"
-    numbers = browser.numbers(f"{found}.map((one) => one.peak)")
-    assert numbers.tobytes() == swept.xi_rel_max.values.tobytes()
-    theirs = {
-        "impacts": swept.impacts_per_period,
-        "multiplicity": swept.multiplicity,
-        "decided": swept.multiplicity_decided,
-    }
-    for name, expected in theirs.items():
-        numbers = browser.numbers(f"{found}.map((one) => one.{name})")
-        assert np.array_equal(numbers, expected.values), name
+    etas = browser.numbers(f"{DIAGRAM}.points.map((point) => point.eta)")
+    assert np.array_equal(etas, swept.eta.values)
+    gaps = browser.numbers(f"{DIAGRAM}.lanes[0].found.flatMap((one) => Array.from(one.gaps))")
+    assert gaps.tobytes() == swept.xi_rel.values.tobytes()
 
 
 ASK = """
 explorer.answers = [];
 for (const [structure, eta] of arguments[0]) {
-  const one = new Float64Array(1).fill(eta);
-  const frequency = one.map(() => eta * Math.sqrt(structure.k1 / structure.m1));
-  const columns = { structure, eta: one, frequency, amplitude: one.map(() => 1 / (eta * eta)) };
-  const asked = { columns, starts: new Float64Array(4), indices: [0], settings: arguments[1] };
+  const frequency = eta * Math.sqrt(structure.k1 / structure.m1);
+  const points = [{ structure, eta, frequency, amplitude: 1 / (eta * eta) }];
+  const asked = { points, starts: new Float64Array(4), indices: [0], settings: arguments[1] };
   const index = explorer.answers.push(null) - 1;
-  explorer.pool.ask("replay", asked, ([part]) => { explorer.answers[index] = part; });
+  explorer.pool.ask("responses", asked, ([part]) => { explorer.answers[index] = part; });
 }
 """
 SETTINGS = {"transient": 500, "samples": 200, "tolerance": 1e-2}
@@ -84,16 +64,11 @@ def numbers_of(structure, pushes):
     return {name: float(value) for name, value in structure.parameters().items()} | pushes
 
 
-def asked_of_the_page(browser, pairs):
-    """Responses of the page from rest."""
-    browser.run(ASK, [[numbers_of(s, pushes), eta] for s, eta, pushes in pairs], SETTINGS)
-    browser.until("return explorer.answers.every(Boolean)", seconds=300)
-
-
 @pytest.mark.parametrize("count", ordinary([20, 300]))
 def test_the_numbers_are_those_of_python(shown, count):
     pairs = list(random_structures(11, count))
-    asked_of_the_page(shown, pairs)
+    shown.run(ASK, [[numbers_of(s, pushes), eta] for s, eta, pushes in pairs], SETTINGS)
+    shown.until("return explorer.answers.every(Boolean)", seconds=300)
     found = [
         orchestrate.sweep(structure, eta=[eta], progress=False, jobs=1, **pushes, **SETTINGS)
         for structure, eta, pushes in pairs

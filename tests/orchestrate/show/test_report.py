@@ -3,7 +3,6 @@
 import base64
 import hashlib
 import re
-from html.parser import HTMLParser
 
 import numpy as np
 import pytest
@@ -12,34 +11,10 @@ import xarray as xr
 import orchestrate
 from orchestrate.show.page import format_number, format_with_error
 
+from ..elements import Elements
+
 EVIL = "<script>alert(\"1\")</script> & 'others'"
 RATE = 1000.0
-
-
-class Tags(HTMLParser):
-    """Tags and texts of a page."""
-
-    def __init__(self):
-        super().__init__()
-        self.tags, self.open, self.texts = [], [], []
-
-    def handle_starttag(self, tag, attrs):
-        self.tags.append((tag, dict(attrs)))
-        if tag not in ("meta", "img"):
-            self.open.append(tag)
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-    def handle_data(self, data):
-        self.texts.append(data)
-
-
-def parsed(html):
-    page = Tags()
-    page.feed(html)
-    assert page.open == []
-    return page
 
 
 @pytest.fixture(scope="module")
@@ -63,10 +38,10 @@ def html(signs, tmp_path_factory):
 
 
 def test_every_text_is_escaped(html):
-    page = parsed(html)
-    assert "script" not in {tag for tag, _ in page.tags}
+    page = Elements(html)
+    assert "script" not in page.tags
     assert EVIL in page.texts  # as a text, twice: the notes and the title's part
-    assert not any(name.startswith("on") for _, attributes in page.tags for name in attributes)
+    assert not any(name.startswith("on") for name in page.attributes)
 
 
 def test_it_needs_no_network_and_its_style_is_the_one_allowed(html):
@@ -76,7 +51,7 @@ def test_it_needs_no_network_and_its_style_is_the_one_allowed(html):
     digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
     assert f"'sha256-{digest}'" in policy.replace("&#39;", "'")
     assert "default-src" in policy and "unsafe" not in policy and "script-src" not in policy
-    assert not any("style" in attributes for _, attributes in parsed(html).tags)
+    assert "style" not in Elements(html).attributes
 
 
 def test_numbers_have_the_digits_of_their_errors():
