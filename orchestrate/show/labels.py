@@ -255,19 +255,15 @@ def expand_title(title: str, with_structure: bool = True) -> str:
     parts = [PART_OF_LABEL.fullmatch(part) for part in label.split("_")]
     if not words or not all(parts):
         return title
-    written = [expand_label_part(part) for part in parts if part] if with_structure else []
-    return join_by_commas([words, *written]) + comma + ending
-
-
-def expand_label_part(part: re.Match[str]) -> str:
-    """Return one part of a structure's file-name label, such as ``f42-55``, in words."""
-    values = re.split(r"(?<=\d)-", part["values"] or "")
-    if not part["values"]:
-        return part[0]
-    if part["name"] == "clearance":
-        return format_added_parameter("clearance", float(part["values"]), xr.Dataset())
-    numbers = [""] if len(values) == 1 else range(1, 1 + len(values))
-    named = zip(numbers, values, strict=True)
-    return join_by_commas(
-        format_parameter(f"{part['name']}{number}", value) for number, value in named
-    )
+    texts = [words]
+    for part in filter(None, parts) if with_structure else ():
+        values = re.split(r"(?<=\d)-", part["values"] or "")  # f42-55: of f1 and f2
+        numbers = [""] if len(values) == 1 else range(1, 1 + len(values))
+        if not part["values"]:
+            texts.append(part[0])
+        elif part["name"] == "clearance":
+            texts.append(format_added_parameter("clearance", float(values[0]), xr.Dataset()))
+        else:
+            names = (f"{part['name']}{number}" for number in numbers)
+            texts += map(format_parameter, names, values)
+    return join_by_commas(texts) + comma + ending

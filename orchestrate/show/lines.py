@@ -319,7 +319,21 @@ def draw_jump_voltages(data: xr.Dataset, title: str = "") -> Figure:
     for panel, jump in zip(axes, jumps, strict=True):
         part = data.sel(jump=jump)
         for structure in map(str, data.structure.values):
-            draw_jump_voltages_over_rate(panel, part.sel(structure=structure), structure)
+            at = part.sel(structure=structure)
+            lag, end, colour = at.rate.values ** (2.0 / 3.0), float(at.jumps), STRUCTURES[structure]
+            finite = np.isfinite(at.voltage.values)
+            count = int(finite.sum())
+            nothing = "undecided" if at.decided.item() == "undecided" else "no jump"
+            words = f"{count} rate{'s' * (count != 1)}" if count else nothing
+            label = None if np.isfinite(end) else f"{structure}: {words}"
+            panel.plot(lag, at.voltage, "o", color=colour, markersize=4, label=label)
+            if np.isfinite(end):  # the line to rate 0
+                error, order = float(at.standard_error), np.argsort(lag[finite])
+                through = np.append(end, at.voltage.values[finite][order])
+                label = f"{structure}: {format_voltage(end, error)}"
+                x = np.append(0.0, lag[finite][order])
+                draw_line(panel, x, through, "-", colour, 1.0, label)
+                panel.errorbar(0.0, end, np.nan_to_num(error), fmt="s", color=colour, capsize=3)
         if known.sel(jump=jump):
             extrapolated = bool(np.isfinite(part.jumps).any())
             words = "at rate 0" if extrapolated else "too few rates for rate 0"
@@ -331,20 +345,3 @@ def draw_jump_voltages(data: xr.Dataset, title: str = "") -> Figure:
         panel.set(xlabel="rate$^{2/3}$ in (V/s)$^{2/3}$", ylabel="voltage in V")
         panel.set_title(f"jump {jump}")
     return figure
-
-
-def draw_jump_voltages_over_rate(panel: Axes, data: xr.Dataset, structure: str) -> None:
-    """Draw one structure's voltages of one jump and, where it is known, the line to rate 0."""
-    lag, end = data.rate.values ** (2.0 / 3.0), float(data.jumps)
-    colour, finite = STRUCTURES[structure], np.isfinite(data.voltage.values)
-    count = int(finite.sum())
-    nothing = "undecided" if data.decided.item() == "undecided" else "no jump"
-    text = f"{structure}: {count} rate{'s' * (count != 1)}" if count else f"{structure}: {nothing}"
-    label = None if np.isfinite(end) else text
-    panel.plot(lag, data.voltage, "o", color=colour, markersize=4, label=label)
-    if np.isfinite(end):
-        error, order = float(data.standard_error), np.argsort(lag[finite])
-        through = np.append(end, data.voltage.values[finite][order])
-        words = f"{structure}: {format_voltage(end, error)}"
-        draw_line(panel, np.append(0.0, lag[finite][order]), through, "-", colour, 1.0, words)
-        panel.errorbar(0.0, end, np.nan_to_num(error), fmt="s", color=colour, capsize=3)

@@ -77,7 +77,11 @@ def draw_passage_with_spectra(
         draw_line(panels[2], time, data.x1, "-", STRUCTURES.get(name, BLUE), 0.3)
         twice = {x: mean_rate(data, data[x].values, POWER_REVOLUTIONS, 2) for x in ACCOUNTS}
         draw_powers(panels[3], time, twice)
-        mesh = draw_waterfall(panels[4], spectra[name], origin, factor, top)
+        # without the slow motion below half the speed
+        lines = spectra[name].sel(order=slice(0.25, None))
+        values = (lines.acceleration.values.T / factor).clip(FLOOR * top)
+        colours: Any = {"norm": LogNorm(FLOOR * top, top), "shading": "nearest"}
+        mesh = panels[4].pcolormesh(lines.time - origin, lines.order, values, **colours)
         for panel in panels[:4]:
             panel.axvline(0.0, color=GREY, linewidth=0.8, zorder=0)
         panels[0].set_title(f"{name}: {format_jumps_or_passage(data)}")
@@ -92,16 +96,6 @@ def draw_passage_with_spectra(
     bar = f"amplitude of the acceleration in {unit}"
     figure.colorbar(mesh, ax=axes[4 * count :], label=bar, pad=0.01)
     return figure
-
-
-def draw_waterfall(
-    axes: Axes, spectra: xr.Dataset, origin: float, unit: float, largest: float
-) -> Any:
-    """Draw spectra over time as colours, without the slow motion below half the speed."""
-    shown = spectra.sel(order=slice(0.25, None))
-    values = (shown.acceleration.values.T / unit).clip(FLOOR * largest)
-    colours: Any = {"norm": LogNorm(FLOOR * largest, largest), "shading": "nearest"}
-    return axes.pcolormesh(shown.time.values - origin, shown.order.values, values, **colours)
 
 
 # -- jumps in words -------------------------------------------------------------------------------

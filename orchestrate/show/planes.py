@@ -111,7 +111,18 @@ def displayed_values(data: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
 
 def draw_map_panel(plane: Axes, data: xr.DataArray, x: np.ndarray, y: np.ndarray) -> None:
     """Draw one map with its colour bar; a y axis in equal ratios becomes logarithmic."""
-    values, shades = colour_scale(str(data.name), data.values)
+    values, shades = data.values, dict[str, Any]()
+    if data.name == "multiplicity":
+        values = np.where(values == 0, 9, np.minimum(values, 8))
+        shades = {"vmin": 0.5, "vmax": 9.5, "cmap": ListedColormap(SHADES)}
+    elif data.name == "exponent":
+        reach = float(np.nanmax(np.abs(values)))
+        shades = {"vmin": -reach, "vmax": reach, "cmap": "PuOr_r"}
+    else:
+        above_zero = values[values > 0.0]
+        values = np.ma.masked_less_equal(values, 0.0)
+        if above_zero.size:
+            shades = {"norm": LogNorm(above_zero.min(), above_zero.max())}
     picture = plane.pcolormesh(x, y, values, rasterized=True, **shades)
     bar = plane.figure.colorbar(picture, ax=plane)
     if data.name == "multiplicity":
@@ -126,19 +137,6 @@ def draw_map_panel(plane: Axes, data: xr.DataArray, x: np.ndarray, y: np.ndarray
         bar.ax.set_xlabel("grey: none", fontsize=7)
     plane.set_yscale("log" if is_geometric_sequence(y) else "linear")
     plane.grid(False)
-
-
-def colour_scale(name: str, values: np.ndarray) -> tuple[np.ndarray, dict[str, Any]]:
-    """Return a quantity's values for colouring, and colour map and norm as keywords."""
-    if name == "multiplicity":
-        shown = np.where(values == 0, 9, np.minimum(values, 8))
-        return shown, {"vmin": 0.5, "vmax": 9.5, "cmap": ListedColormap(SHADES)}
-    if name == "exponent":
-        reach = float(np.nanmax(np.abs(values)))
-        return values, {"vmin": -reach, "vmax": reach, "cmap": "PuOr_r"}
-    above_zero = values[values > 0.0]
-    shown = np.ma.masked_less_equal(values, 0.0)
-    return shown, {"norm": LogNorm(above_zero.min(), above_zero.max()) if above_zero.size else None}
 
 
 def is_geometric_sequence(values: np.ndarray) -> bool:
@@ -163,7 +161,18 @@ def draw_basin(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", 
     plane.pcolormesh(data[x] / right, data[y] / up, kinds, cmap=shades, **limits)
     add_attractors_to_legend(plane, data)
     if "state" in data and "phase" not in (x, y):
-        mark_attractors(plane, data, (x, right), (y, up))
+        columns = dict(zip(("x1", "x2", "v1", "v2"), data.state.values.T, strict=True))
+        clearance = 0.0 if data.attrs.get("bonded") else float(data.attrs.get("clearance", 0.0))
+        columns["x_rel"] = columns["x2"] - columns["x1"] + clearance
+        columns["v_rel"] = columns["v2"] - columns["v1"]
+        kept = plane.axis()
+        cross: Any = {"marker": "X", "markeredgecolor": BLACK, "markersize": 8.0}
+        cross["linestyle"] = "none"
+        colours = [*BASINS, *[OTHER] * data.sizes["attractor"]]
+        for at_x, at_y, colour in zip(columns[x] / right, columns[y] / up, colours, strict=False):
+            plane.plot(at_x, at_y, markerfacecolor=colour, **cross)
+        plane.axis(kept)
+        plane.plot([], [], markerfacecolor="white", label="states on them", **cross)
     plane.set(xlabel=names[0] or x_label, ylabel=names[1] or y_label)
     plane.grid(False)
     figure.legend(loc="outside lower left")
@@ -205,23 +214,6 @@ def coordinate_scale_and_label(data: xr.Dataset, name: str) -> tuple[float, str]
     unit = "" if shows_lengths_as_ratios(data) else labels.typeset_unit(word)
     symbol = labels.symbol_with_unit(name).rpartition(" in ")[0]
     return factor, append_unit(labels.gap_name(data) if name == "x_rel" else symbol, unit)
-
-
-def mark_attractors(
-    plane: Axes, data: xr.Dataset, across: tuple[str, float], up: tuple[str, float]
-) -> None:
-    columns = dict(zip(("x1", "x2", "v1", "v2"), data.state.values.T, strict=True))
-    clearance = 0.0 if data.attrs.get("bonded") else float(data.attrs.get("clearance", 0.0))
-    columns["x_rel"] = columns["x2"] - columns["x1"] + clearance
-    columns["v_rel"] = columns["v2"] - columns["v1"]
-    x, y = (columns[name] / unit for name, unit in (across, up))
-    limits = plane.get_xlim(), plane.get_ylim()
-    cross: Any = {"marker": "X", "markeredgecolor": BLACK, "markersize": 8.0, "linestyle": "none"}
-    for index in range(data.sizes["attractor"]):
-        colour = BASINS[index] if index < len(BASINS) else OTHER
-        plane.plot(x[index], y[index], markerfacecolor=colour, **cross)
-    plane.set(xlim=limits[0], ylim=limits[1])
-    plane.plot([], [], markerfacecolor="white", label="states on them", **cross)
 
 
 def add_attractors_to_legend(plane: Axes, data: xr.Dataset) -> None:
@@ -302,7 +294,11 @@ def draw_poincare(data: xr.Dataset, title: str = "") -> Figure:
     plane.set(xlabel=x_label, ylabel=y_label)
     if sticks.any():
         plane.legend()
-    widen_narrow_limits(plane)
+    # axes of nearly constant values are widened: a periodic motion shows as a point
+    for name, (low, high) in (("xlim", plane.get_xlim()), ("ylim", plane.get_ylim())):
+        middle = 0.5 * (low + high)
+        half = max(0.5 * (high - low), 0.05 * abs(middle))
+        plane.set(**{name: (middle - half, middle + half)})
     return figure
 
 
@@ -312,17 +308,6 @@ def displayed_gap_and_velocity(
     """Return gap and gap velocity in display units, each with its axis label."""
     gap = displayed_lengths(data, data.x_rel, "gap")
     return gap, displayed_lengths(data, data.v_rel, "gap velocity", "m/s")
-
-
-def widen_narrow_limits(plane: Axes) -> None:
-    """Widen axes with nearly constant values, so that a periodic motion shows as a point."""
-    for low, high, set_limits in (
-        (*plane.get_xlim(), plane.set_xlim),
-        (*plane.get_ylim(), plane.set_ylim),
-    ):
-        middle = 0.5 * (low + high)
-        half = max(0.5 * (high - low), 0.05 * abs(middle))
-        set_limits(middle - half, middle + half)
 
 
 @draws("manifold")

@@ -68,8 +68,17 @@ def draw_resonance(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Datas
             if name == "x_rel_max":
                 branch.draw_bifurcations(plane, LENGTHS[name], factor)
             plane.set_xlim(span)
-    if "x_rel_max" in axes and data.sizes.get("jump"):
-        draw_jumps(axes["x_rel_max"], data, parameter, x)
+    texts, has_jumps = [], "x_rel_max" in axes and data.sizes.get("jump")
+    for direction, style in JUMP_LINES.items() if has_jumps else ():
+        jumps = data[f"jump_{parameter}"].where(data.jump_direction == direction, drop=True)
+        positions = sorted(axis_position(float(jump), data[parameter], x) for jump in jumps)
+        line: Any = {"linewidth": 0.8, "linestyle": style, "label": f"jump {direction}"}
+        for at in positions:
+            axes["x_rel_max"].axvline(at, color=BLACK, **line)
+        if positions:
+            texts.append(f"jump{'s' * (len(positions) > 1)} {direction} at {x.format(*positions)}")
+    if texts:
+        axes["x_rel_max"].set_title("; ".join(texts), fontsize=8)
     for plane in axes.values():  # panels of two widths
         plane.tick_params(labelbottom=True)
         plane.set_xlabel(x.label)
@@ -151,19 +160,6 @@ def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: AxisV
             colour = STRUCTURES.get(str(peak.peak_structure.values), BLACK)
             at = axis_position(float(peak[f"peak_{parameter}"]), data[parameter], x)
             axes.plot(at, height, "v", color=colour, markersize=6.0, markeredgecolor="white")
-
-
-def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: AxisValues) -> None:
-    texts = []
-    for direction, style in JUMP_LINES.items():
-        jumps = data[f"jump_{parameter}"].where(data.jump_direction == direction, drop=True)
-        positions = sorted(axis_position(float(jump), data[parameter], x) for jump in jumps)
-        for at in positions:
-            axes.axvline(at, color=BLACK, linewidth=0.8, linestyle=style, label=f"jump {direction}")
-        if positions:
-            texts.append(f"jump{'s' * (len(positions) > 1)} {direction} at {x.format(*positions)}")
-    if texts:
-        axes.set_title("; ".join(texts), fontsize=8)
 
 
 def axis_position(value: float, parameter: xr.DataArray, x: AxisValues) -> float:

@@ -36,22 +36,17 @@ export function drawChart(pen, size, theme, chart) {
       else pen.line(xs, ys, { stroke: theme[colour], width, alpha });
     }
   });
-  drawLegend(pen, place, theme, chart);
-}
-
-/** @param {Pen} pen @param {Place} place @param {Theme} theme @param {Chart} chart */
-function drawLegend(pen, [left, top, width], theme, { series, spans }) {
-  let x = left + width;
-  if (spans?.length) {
-    pen.text(x, top - 10, CONTACT, { anchor: "end", fill: theme.ink });
-    x -= 6.3 * CONTACT.length + 18;
-    pen.box(x, top - 16, 12, 12, { fill: theme.contact, stroke: theme.soft });
-    x -= 10;
+  let end = left + width; // of what is written above, from right to left
+  if (chart.spans?.length) {
+    pen.text(end, top - 10, CONTACT, { anchor: "end", fill: theme.ink });
+    end -= 6.3 * CONTACT.length + 18;
+    pen.box(end, top - 16, 12, 12, { fill: theme.contact, stroke: theme.soft });
+    end -= 10;
   }
-  for (const { label, colour } of [...series].reverse()) {
+  for (const { label, colour } of [...chart.series].reverse()) {
     if (!label) continue;
-    pen.text(x, top - 10, label, { anchor: "end", fill: theme[colour] });
-    x -= 16 + 7.5 * label.length;
+    pen.text(end, top - 10, label, { anchor: "end", fill: theme[colour] });
+    end -= 16 + 7.5 * label.length;
   }
 }
 

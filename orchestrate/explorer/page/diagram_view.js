@@ -105,28 +105,11 @@ export class DotPlate {
   }
 }
 
-/** Frames of both panels. @param {Pen} pen @param {Size} size @param {Theme} theme @param {Axes} axes @param {number} unit of frequency ratios on the axis */
-function drawFrames(pen, size, theme, axes, unit) {
-  const x = { ...axes.x, low: axes.x.low * unit, high: axes.x.high * unit };
-  const { gaps, impacts } = panelPlaces(size);
-  drawFrame(pen, drawZeroStrip(pen, gaps, theme), theme, { ...x, label: undefined }, axes.gaps);
-  drawFrame(pen, drawZeroStrip(pen, impacts, theme), theme, x, axes.impacts, STRIP);
-}
-
 /** The strip of zero below a logarithmic axis; the place that is left above it. @param {Pen} pen @param {Place} place @param {Theme} theme @returns {Place} */
 function drawZeroStrip(pen, [left, top, width, height], theme) {
   pen.box(left, top + height - STRIP, width, STRIP, { fill: theme.grid });
   pen.text(left - 6, top + height - STRIP + 13, "0", { anchor: "end", fill: theme.soft });
   return [left, top, width, height - STRIP];
-}
-
-/** Which colour is which direction, where there are both. @param {Pen} pen @param {Size} size @param {Theme} theme @param {Diagram} diagram */
-function drawLaneLegend(pen, size, theme, { lanes }) {
-  if (lanes.length < 2) return;
-  const [left, top, width] = panelPlaces(size).gaps;
-  lanes.forEach(({ direction }, i) =>
-    pen.text(left + width - 100 * (1 - i), top - 10, `swept ${direction}`, { anchor: "end", fill: theme[direction] }),
-  );
 }
 
 /** The chosen frequency, and the span that is being dragged. @param {Pen} pen @param {Size} size @param {Theme} theme @param {Axis} axis @param {{eta: number | null, drag: [number, number] | null}} marks */
@@ -221,8 +204,19 @@ export class DiagramView {
       [this.queue, this.done] = [[...this.knownResponses()], 0];
     }
     this.drawQueuedDots(this.plate, theme, this.diagram);
-    drawLaneLegend(pen, size, theme, this.diagram);
-    drawFrames(pen, size, theme, this.axes, ratioUnit(this.diagram.structure, this.diagram.level));
+    const { structure, level, lanes } = this.diagram;
+    const { gaps, impacts } = panelPlaces(size);
+    const [left, top, width] = gaps;
+    if (lanes.length > 1) {
+      lanes.forEach(({ direction }, i) =>
+        pen.text(left + width - 100 * (1 - i), top - 10, `swept ${direction}`, { anchor: "end", fill: theme[direction] }),
+      );
+    }
+    const { axes } = this;
+    const unit = ratioUnit(structure, level);
+    const x = { ...axes.x, low: axes.x.low * unit, high: axes.x.high * unit };
+    drawFrame(pen, drawZeroStrip(pen, gaps, theme), theme, { ...x, label: undefined }, axes.gaps);
+    drawFrame(pen, drawZeroStrip(pen, impacts, theme), theme, x, axes.impacts, STRIP);
     this.plate.context.putImageData(this.plate.image, 0, 0);
     pen.image(this.plate.canvas, 0, 0, size.width, size.height);
     this.overlay?.(pen, size, theme);

@@ -10,14 +10,13 @@ const MOST = 3; // ranges that are named
 /** From which level on a beam that stays closed opens; nothing of one whose halves are not pressed. @param {Point} point @param {Level} level */
 export function openingLevelWords(point, level) {
   const { gap_offset, threshold: amplitude } = traitsOf(point);
-  if (!isInHertz(level) || gap_offset >= 0 || isBeyondTheory(point)) return "";
+  const { wall, stroke, box_acceleration, force1, force2 } = point.structure;
+  // the level is that of the box's shaking alone
+  if (!isInHertz(level) || gap_offset >= 0 || wall || stroke || box_acceleration || force1 || force2) return "";
   const value = level.unit === "g" ? (amplitude * point.frequency * point.frequency) / GRAVITY : 1e3 * amplitude;
   const threshold = { unit: level.unit, value };
   return Number.isFinite(value) ? ` At this frequency they open from ${levelInShownUnit(threshold).text} on.` : "";
 }
-
-/** Whether the level at which halves open is not known: it is of the box's shaking alone. @param {Point} point */
-const isBeyondTheory = ({ structure: { wall, stroke, box_acceleration, force1, force2 } }) => [wall, stroke, box_acceleration, force1, force2].some((one) => one !== 0);
 
 /** Where a complete diagram's beam opens, or that it does so unseen. @param {Diagram} diagram */
 export function openingWords(diagram) {

@@ -61,14 +61,6 @@ export class Regions {
     this.coarse = !quick && !shipped && low === whole.low && high === whole.high ? diagram : null;
   }
 
-  /** The whole again, as fine as the paper's Figure 6. @param {Diagram} diagram */
-  refine(diagram) {
-    this.coarse = null;
-    const fine = emptyDiagram(diagram.structure, diagram, FINE, USUAL);
-    this.seen[this.place] = fine;
-    this.compute(fine, diagram);
-  }
-
   /** The diagram whose states a new one may begin from. @param {Region} region */
   diagramToStartFrom(region) {
     const known = [this.diagram, this.shipped].find(
@@ -102,7 +94,11 @@ export class Regions {
       this.complete = true;
       this.view.dropDiagramBelow();
       this.told(true);
-      if (this.coarse === diagram) this.refine(diagram);
+      if (this.coarse !== diagram) return;
+      // the whole again, as fine as the paper's Figure 6
+      this.coarse = null;
+      this.seen[this.place] = emptyDiagram(diagram.structure, diagram, FINE, USUAL);
+      this.compute(this.diagram, diagram);
     });
     this.told(false);
   }

@@ -36,23 +36,21 @@ export function repeatWords(motion, exponent) {
   return undecided ? "undecided" : "irregular";
 }
 
-/** How a beam of one's own is shaken, and how far it opens. @param {number} peak @param {Point} point @param {Level} level @returns {Record<string, string>} */
-function shakingNumbers(peak, point, level) {
-  const [scale, words] = [axisScale(point, level), axisWords(level)];
-  const { eta, frequency, amplitude } = point;
-  return {
-    [words.frequency.replace("shaking ", "")]: formatNumber(scale.line, 6),
-    [words.place.replace("displacement", "amplitude of the box")]: formatNumber(amplitude / scale.length),
-    [words.acceleration.replace("acceleration", "acceleration of the box")]: formatNumber((amplitude * frequency * frequency) / scale.acceleration),
-    [`largest ${words.gap}`]: formatNumber((peak * amplitude * eta * eta) / scale.length),
-  };
-}
-
 /** Numbers of a response for people. @param {Response} response @param {Point} point @param {Level} level @param {Exponent | null} [exponent] @returns {Record<string, string>} */
 export function responseNumbers(response, point, level, exponent) {
   const { peak, impacts, contact } = response;
+  const { eta, frequency, amplitude } = point;
   /** @type {Record<string, string>} */
-  const first = isInHertz(level) ? shakingNumbers(peak, point, level) : { "frequency ratio η": formatNumber(point.eta, 6), "largest gap ξ": formatNumber(peak, 6) };
+  let first = { "frequency ratio η": formatNumber(eta, 6), "largest gap ξ": formatNumber(peak, 6) };
+  if (isInHertz(level)) {
+    const [scale, words] = [axisScale(point, level), axisWords(level)];
+    first = {
+      [words.frequency.replace("shaking ", "")]: formatNumber(scale.line, 6),
+      [words.place.replace("displacement", "amplitude of the box")]: formatNumber(amplitude / scale.length),
+      [words.acceleration.replace("acceleration", "acceleration of the box")]: formatNumber((amplitude * frequency * frequency) / scale.acceleration),
+      [`largest ${words.gap}`]: formatNumber((peak * amplitude * eta * eta) / scale.length),
+    };
+  }
   const count = formatNumber(impacts, DIGITS);
   return {
     ...first,
