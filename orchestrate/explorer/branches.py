@@ -35,11 +35,11 @@ def branch_json(branch: xr.Dataset | None) -> dict[str, Any]:
 
 def branch_lines(branch: xr.Dataset) -> list[dict[str, Any]]:
     """Return each sample's gaps above 0 as lines that end where the stability changes."""
-    lines = []
+    lines, all_stable = [], branch.stable.values == 1
     for samples in branch.xi_rel.transpose("sample", "point").values:
         kept = samples > 0.0
         x, gaps = branch["eta"].values.astype(float)[kept], samples[kept]
-        stable = branch.stable.values[kept] == 1
+        stable = all_stable[kept]
         cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1).tolist(), len(x)]
         for a, b in pairwise(cuts):
             part = slice(a, b + 1)

@@ -43,18 +43,6 @@ class Browser:
         """What a script returns."""
         return self.driver.execute_script(script, *arguments)
 
-    def drag(self, places):
-        """Press the mouse at the first place of the window, in pixels, release it at the last."""
-        from selenium.webdriver.common.actions.action_builder import ActionBuilder
-
-        actions = ActionBuilder(self.driver, duration=20)
-        mouse = actions.pointer_action
-        mouse.move_to_location(*places[0]).pointer_down()
-        for place in places[1:]:
-            mouse.move_to_location(*place)
-        mouse.pointer_up()
-        actions.perform()
-
     def keys(self, *keys, held=None):
         """Type, while another key is held."""
         from selenium.webdriver import ActionChains
@@ -103,7 +91,15 @@ class Browser:
 
     def mouse(self, name, *places):
         """Press at the first place of an element, as a part of its size, release at the last."""
-        self.drag(self.run(PLACES, name, [list(place) for place in places]))
+        from selenium.webdriver.common.actions.action_builder import ActionBuilder
+
+        first, *others = self.run(PLACES, name, [list(place) for place in places])
+        actions = ActionBuilder(self.driver, duration=20)
+        mouse = actions.pointer_action.move_to_location(*first).pointer_down()
+        for place in others:
+            mouse.move_to_location(*place)
+        mouse.pointer_up()
+        actions.perform()
 
     def chosen(self, seconds=60):
         """The motion that was asked for has come."""

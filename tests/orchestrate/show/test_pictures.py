@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import functools
-
 import numpy as np
 import pytest
 
-from orchestrate.constants import GRAVITY
+from orchestrate.constants import GRAVITY, TURN
 from orchestrate.dynamics.branches import branch
 from orchestrate.errors import StoreError
 from orchestrate.model import Structure
 from orchestrate.response.sweep import sweep
 from orchestrate.show import lines, scales
 from orchestrate.show.figure_files import save
-from orchestrate.show.lines import draw_branch
 from orchestrate.show.plot import plot
 from orchestrate.show.style import XI_REL, make_panels
 
@@ -71,36 +68,25 @@ def test_a_structure_in_si_is_told_in_hertz_and_metres():
     assert axis[-1] == pytest.approx(1.3 * 75.0 / (2.0 * np.pi))
 
 
-PAPER = Structure.nondimensional()
-BEAM = PAPER.replace(omega=75.0)
-
-
-@functools.cache
-def window():
-    return branch(PAPER, eta=2.5, limits=(2.4, 2.8))
-
-
-def test_stable_is_solid_and_unstable_dashed():
-    figure = draw_branch(window())
-    lines = figure.axes[0].get_lines()
-    solid = next(line for line in lines if line.get_linestyle() == "-")
-    dashed = next(line for line in lines if line.get_linestyle() == "--")
-    border_at = window().bifurcation_value.values[0]
-    shown = np.isfinite(solid.get_ydata())
-    assert (solid.get_xdata()[shown] < border_at).all()
-    assert np.isfinite(dashed.get_ydata()).sum() > 3
-    assert dashed.get_xdata()[np.isfinite(dashed.get_ydata())].max() == pytest.approx(2.8)
+BEAM = Structure.nondimensional().replace(omega=75.0)
 
 
 def test_a_branch_is_in_hertz_and_metres_where_the_responses_are():
-    """A settled response lies on its branch, whatever level the box is held at."""
+    """A settled response lies on its branch, whatever level the box is held at; what is stable is
+    solid and ends at the bifurcation, what is not is dashed.
+    """
     turns = 75.0 * np.linspace(2.45, 2.55, 21)
     level = {"amplitude": 0.02 * GRAVITY / turns**2}
     branches = branch(BEAM, eta=2.5, limits=(2.4, 2.8), progress=False)
     responses = sweep(BEAM, frequency=turns, **level, transient=3000, samples=1, progress=False)
     top, _ = plot(responses, branches).axes
     metres = (responses.xi_rel[:, 0] * responses.amplitude * responses.eta**2).values
-    line = next(one for one in top.get_lines() if one.get_label() == "stable")
+    lines = {line.get_label(): line for line in reversed(top.get_lines())}
+    solid, dashed = lines["stable"], lines["unstable"]
     unit = {"nm": 1e-9, "µm": 1e-6}[top.get_ylabel().split()[5].strip(",")]
-    there = np.interp(turns / (2.0 * np.pi), line.get_xdata(), line.get_ydata()) * unit
+    there = np.interp(turns / TURN, *solid.get_data()) * unit
     assert there == pytest.approx(metres, rel=2e-3)
+    assert (solid.get_linestyle(), dashed.get_linestyle()) == ("-", "--")
+    etas = [x[np.isfinite(y)] * TURN / 75.0 for x, y in (solid.get_data(), dashed.get_data())]
+    assert etas[0].max() < branches.bifurcation_value[0] < etas[1].max() == pytest.approx(2.8)
+    assert len(etas[1]) > 3
