@@ -82,11 +82,13 @@ def read_checked_sweep(data: xr.Dataset, direction: str) -> SweepData:
     pairs = zip(data.frequency.values, data.amplitude.values, strict=True)
     lengths = np.array([Excitation(frequency=f, amplitude=a).length(structure) for f, a in pairs])
     scale = lengths[:, None] * np.array([1.0, 1.0, structure.omega, structure.omega])
+    start = parse_state(data.attrs["start"])
     rows = [np.stack([data[name].values for name in ("eta", "frequency", "amplitude")])]
     for one_way in directions:
         part = data.sel(direction=one_way) if "direction" in data.dims else data
         ends = part.end_state.transpose(parameter, "coordinate").values * scale
-        rows.append(start_states(ends, parse_state(data.attrs["start"]), one_way))
+        # each response begins at the end of the one before it
+        rows.append(np.stack([start, *ends[:-1]] if one_way == "up" else [*ends[1:], start]))
     if any(row.dtype.kind != "f" for row in rows):
         raise TypeError("texts among the numbers")
     numbers = np.concatenate([row.ravel() for row in rows])
@@ -180,15 +182,6 @@ def parse_state(text: Any) -> NDArray[np.float64]:
     if state.shape != (4,):
         raise ValueError(f"start = {text}")
     return state
-
-
-def start_states(
-    ends: NDArray[np.float64], start: NDArray[np.float64], direction: str
-) -> NDArray[np.float64]:
-    """Return each response's start state, the end of the one before it, shape (n, 4)."""
-    if direction == "up":
-        return np.concatenate([start[None], ends[:-1]])
-    return np.concatenate([ends[1:], start[None]])
 
 
 FILE = Path(__file__).with_name("figure6.nc")  # written by tools/figure6_states.py

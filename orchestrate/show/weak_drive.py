@@ -56,7 +56,7 @@ def draw_ramps(
         mark_jumps(axes[0], data, name)
     if theory is not None:
         theory, line = in_display_units(theory), {"color": BLACK, "linewidth": 1.0}
-        stable = theory.stable.values
+        stable = theory.stable
         draw_speed_curves(axes, theory, stable, "-.", **line, label=f"{THEORY}, stable")
         draw_speed_curves(axes, theory, ~stable, ":", **line, label=f"{THEORY}, unstable")
     if branches is not None:
@@ -121,15 +121,11 @@ def draw_drive_branches(branches: xr.Dataset, title: str = "") -> Figure:
 
 
 def draw_speed_curves(
-    axes: Sequence[Axes], data: xr.Dataset, part: np.ndarray, style: str, **line: Any
+    axes: Sequence[Axes], data: xr.Dataset, part: xr.DataArray, style: str, **line: Any
 ) -> None:
-    voltage, speed, amplitude = (data[name].values for name in ("voltage", "speed", "amplitude"))
-    if part.dtype == bool:
-        voltage, amplitude = (np.where(part, values, np.nan) for values in (voltage, amplitude))
-    else:
-        voltage, speed, amplitude = voltage[part], speed[part], amplitude[part]
-    axes[0].plot(voltage, speed, style, **line)
-    axes[1].plot(speed, amplitude, style, **line)
+    voltage, amplitude = (data[name].where(part) for name in ("voltage", "amplitude"))
+    axes[0].plot(voltage, data.speed, style, **line)
+    axes[1].plot(data.speed, amplitude, style, **line)
 
 
 def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
@@ -138,7 +134,7 @@ def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
         line: Any = {"color": STRUCTURES[name], "linewidth": 3.0, "alpha": 0.45, "zorder": 1}
         for i, leg in enumerate(branches.leg.values):
             branch = branches.sel(structure=name, leg=leg)
-            stable, known = branch.stable.values, np.isfinite(branch.voltage.values)
+            stable, known = branch.stable, branch.voltage.notnull()
             for part, style, what in ((stable, "-", "stable"), (known & ~stable, ":", "unstable")):
                 label = None if i else f"{name}, branch, {what}"
                 draw_speed_curves(axes, branch, part, style, **line, label=label)
@@ -157,13 +153,13 @@ def drop_spin_up(data: xr.Dataset) -> xr.Dataset:
     return data.isel(revolution=slice(end, None)) if early else data
 
 
-def split_there_and_back(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
-    """Return a run's revolutions there and back as index arrays, each with style and name."""
-    voltage = data.voltage.values
-    turn = int(np.argmax(np.abs(voltage - voltage[0]))) or len(voltage) - 1  # or a constant voltage
-    numbers = np.arange(turn + 1), np.arange(turn + 1, len(voltage))
-    legs = zip(numbers, DIRECTION_STYLES.values(), ("there", "back"), strict=True)
-    return [leg for leg in legs if leg[0].size]
+def split_there_and_back(data: xr.Dataset) -> list[tuple[xr.DataArray, str, str]]:
+    """Return which revolutions are there, and which are back, each with style and name."""
+    change = abs(data.voltage - data.voltage[0]).values
+    turn = int(np.argmax(change)) or len(change) - 1  # or a constant voltage
+    there = data.voltage.copy(data=np.arange(len(change)) <= turn)
+    legs = zip((there, ~there), DIRECTION_STYLES.values(), ("there", "back"), strict=True)
+    return [leg for leg in legs if leg[0].any()]
 
 
 def running_mean(values: np.ndarray, count: int) -> np.ndarray:
@@ -195,10 +191,9 @@ def mark_jumps(axes: Axes, data: xr.Dataset, name: str) -> None:
 
 
 def draw_outward_powers(axes: Axes, data: xr.Dataset, name: str) -> None:
-    outward = split_there_and_back(data)[0][0]
-    if len(outward) < 3 * POWER_REVOLUTIONS:
+    part, count = data.isel(revolution=split_there_and_back(data)[0][0]), POWER_REVOLUTIONS
+    if part.sizes["revolution"] < 3 * count:
         return
-    part, count = data.isel(revolution=outward), POWER_REVOLUTIONS
     powers = passage.mean_powers(part).items()
     twice = {account: running_mean(values, count) for account, values in powers}
     speed = running_mean(running_mean(part.speed.values[1:], count), count)

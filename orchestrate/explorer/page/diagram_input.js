@@ -12,23 +12,21 @@ export function listenToDiagram(view, acts) {
   const { canvas } = view.picture;
   /** @type {number | null} */
   let from = null;
-  /** @param {PointerEvent} event */
-  const place = (event) => event.clientX - canvas.getBoundingClientRect().left;
   canvas.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
-    from = place(event);
+    from = event.offsetX;
     canvas.setPointerCapture(event.pointerId);
   });
   canvas.addEventListener("pointermove", (event) => {
     if (from === null) return;
-    const wide = Math.abs(place(event) - from) > CLICK;
-    view.marks.drag = wide ? [view.etaAt(from), view.etaAt(place(event))] : null;
+    const wide = Math.abs(event.offsetX - from) > CLICK;
+    view.marks.drag = wide ? [view.etaAt(from), view.etaAt(event.offsetX)] : null;
     view.picture.redraw();
   });
   canvas.addEventListener("pointerup", (event) => {
     if (from === null) return;
-    const ends = [view.etaAt(from), view.etaAt(place(event))].sort((a, b) => a - b);
-    const click = Math.abs(place(event) - from) <= CLICK;
+    const ends = [view.etaAt(from), view.etaAt(event.offsetX)].sort((a, b) => a - b);
+    const click = Math.abs(event.offsetX - from) <= CLICK;
     from = null;
     view.marks.drag = null;
     view.picture.redraw();

@@ -1,6 +1,6 @@
 /** The view as a link: what is behind the # restores it. */
 
-import { isSameLevel, LEVELS, PAPER } from "./excitation.js";
+import { isSameLevel, LEVELS } from "./excitation.js";
 
 /**
  * @typedef {{structure: Structure, level: Level, low: number, high: number,
@@ -27,33 +27,25 @@ export function linkFragment({ structure, level, low, high, direction, eta, star
 /** A view from a link; what it does not say, or says wrongly, is as in `view`. @param {string} fragment @param {View} view @param {Ranges} ranges @returns {View} */
 export function viewFromLink(fragment, view, ranges) {
   const words = new URLSearchParams(fragment.replace(/^#/, ""));
-  /** @param {string} name @param {[number, number]} range @param {number | undefined} other */
-  const number = (name, [least, most], other) => {
-    const value = words.get(name) ? Number(words.get(name)) : NaN;
-    return value >= least && value <= most ? value : other;
+  /** @param {string} name @param {[number, number]} range */
+  const number = (name, [least, most]) => {
+    const value = Number(words.get(name) || NaN);
+    return value >= least && value <= most ? value : undefined;
   };
   const structure = { ...view.structure };
   for (const name of /** @type {(keyof Structure)[]} */ (Object.keys(structure))) {
-    structure[name] = number(name, ranges[name], structure[name]) ?? 0;
+    structure[name] = number(name, ranges[name]) ?? structure[name];
   }
-  const direction = words.get("direction") ?? "";
+  const unit = /** @type {const} */ (["g", "mm", "paper"]).find((one) => number(one, LEVELS[one]) !== undefined);
+  const direction = /** @type {const} */ (["up", "down", "both"]).find((one) => one === words.get("direction"));
   const start = (words.get("start") ?? "").split(",").map((text) => (text ? Number(text) : NaN));
-  const [low, high] = [number("from", ETAS, view.low) ?? view.low, number("to", ETAS, view.high) ?? view.high];
+  const [low, high] = [number("from", ETAS) ?? view.low, number("to", ETAS) ?? view.high];
   return {
     structure,
-    level: levelFromLink(number) ?? view.level,
+    level: unit ? { unit, value: Number(words.get(unit)) } : view.level,
     ...(high > low ? { low, high } : { low: view.low, high: view.high }),
-    direction: direction === "up" || direction === "down" || direction === "both" ? direction : view.direction,
-    eta: number("eta", ETAS, undefined) ?? view.eta,
+    direction: direction ?? view.direction,
+    eta: number("eta", ETAS) ?? view.eta,
     start: start.length === 4 && start.every(Number.isFinite) ? start : null,
   };
-}
-
-/** @param {(name: string, range: [number, number], other: undefined) => number | undefined} number @returns {Level | undefined} */
-function levelFromLink(number) {
-  for (const unit of /** @type {const} */ (["g", "mm"])) {
-    const value = number(unit, LEVELS[unit], undefined);
-    if (value !== undefined) return { unit, value };
-  }
-  return number("paper", LEVELS.paper, undefined) === 1 ? PAPER : undefined;
 }
