@@ -4,12 +4,6 @@ import { distanceToState, traitsOf } from "./model.js";
 import { repeatPeriods, REPEATED, computeResponse, UNDECIDED } from "./response.js";
 import { lengthOf, omegaOf } from "./structure.js";
 
-/**
- * @typedef {{side: number, gap: number, speed: number, mean: [number, number]}} Plane
- *   gap from 0 and gap velocity to both sides, over a eta^2; means of displacements, velocities
- * @typedef {{multiplicity: number, decided: number, samples: Float64Array, impacts: number, frequency: number, gap: number}} Attractor
- */
-
 export const SETTLING = { transient: 300, samples: 64, tolerance: 1e-2 };
 const LONGEST = 6000; // periods after which what is undecided stays so
 
@@ -67,7 +61,7 @@ export function isOtherAttractor(shown, one, tolerance) {
   return [shown, one].every(({ decided }) => decided !== UNDECIDED) && findAttractor([shown], one, tolerance) < 0;
 }
 
-/** What a response is to the picture. @param {import("./response.js").Response} response @param {Point} point @returns {Attractor} */
+/** What a response is to the picture. @param {Settled} response @param {Point} point @returns {Attractor} */
 export function attractorOf({ states, multiplicity, decided, impacts, peak }, point) {
   const samples = states.slice(-4 * SETTLING.samples);
   return { multiplicity, decided, samples, impacts, frequency: point.frequency, gap: peak * lengthOf(point) };

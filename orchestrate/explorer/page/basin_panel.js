@@ -88,7 +88,7 @@ export class BasinPanel {
     return complete ? `No other motion from ${SIDE * SIDE} starts.` : "";
   }
 
-  /** A motion is shown: mark it, and try a few starts. @param {Choice} choice @param {import("./response.js").Response} response */
+  /** A motion is shown: mark it, and try a few starts. @param {Choice} choice @param {Settled} response */
   setShownMotion({ point }, response) {
     this.shown = attractorOf(response, point);
     if (this.mapped) this.listAttractors(this.at("basins").dataset.complete === "true");
@@ -107,7 +107,7 @@ export class BasinPanel {
     });
   }
 
-  /** Unless it is there. @param {Choice} choice @param {import("./response.js").Response} response */
+  /** Unless it is there. @param {Choice} choice @param {Settled} response */
   computeMap({ point, level }, response) {
     if (!this.wanted || this.mapped) return;
     this.order?.cancel();
@@ -148,7 +148,7 @@ export class BasinPanel {
   }
 }
 
-/** The plane of starts around a response. @param {Point} point @param {import("./response.js").Response} response @returns {Plane} */
+/** The plane of starts around a response. @param {Point} point @param {Settled} response @returns {Plane} */
 function planeAround(point, { peak, end }) {
   const { eta, structure } = point;
   const reach = Math.max(peak, 1e-3) * 3;

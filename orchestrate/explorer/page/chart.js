@@ -2,14 +2,6 @@
 
 import { axisToPixels, formatNumber, tickText, axisTicks } from "./scale.js";
 
-/**
- * @typedef {{x: ArrayLike<number>, y: ArrayLike<number>, colour: keyof Theme, dots?: number,
- *   label?: string, alpha?: number, width?: number}} Series
- * @typedef {{x: Axis, y: Axis, series: Series[], spans?: [number, number][]}} Chart
- *   `spans` of contact
- * @typedef {[number, number, number, number]} Place x, y, width, height
- */
-
 const CONTACT = "stuck together"; // what the spans are
 const MARGIN = { left: 72, right: 18, top: 20, bottom: 38 };
 

@@ -2,13 +2,6 @@
 
 import { Buffers } from "./kernel.js";
 
-/**
- * @typedef {"oscillator" | "drive"} Side
- * @typedef {{oscillator: Record<string, number>, drive: Record<string, number>, pair: Record<string, number>, columns: string[],
- *   names: Record<Side, {inputs: string[], outputs: string[]}>, h: number, omega: number}} Start start values, the loop's structure, columns of a row
- * @typedef {{oscillator: Uint8Array, drive: Uint8Array, row: Float64Array, last: Float64Array}} Run saved states and last row, and what there was when the revolution began
- */
-
 const WARNING = 1; // status of FMI
 const MODELS = { oscillator: "oscillator", drive: "motor_shaker" };
 const SIDES = /** @type {Side[]} */ (Object.keys(MODELS));

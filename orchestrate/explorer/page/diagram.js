@@ -4,17 +4,6 @@ import { hertzOf, isInHertz, pointAt, pointAtHertz } from "./excitation.js";
 import { carryState } from "./model.js";
 import { niceStep } from "./scale.js";
 
-/**
- * @typedef {"up" | "down" | "both"} Direction
- * @typedef {{index: number, gaps: Float64Array, peak: number, impacts: number, contact: boolean,
- *   multiplicity: number, decided: number, start: number[], end: number[]}} Found
- * @typedef {{direction: "up" | "down", found: (Found | undefined)[], starts: Float64Array | null, from: number[] | null}} Lane
- *   `starts`: where each response begins, if that is known beforehand; `from`: where a chain does
- * @typedef {{low: number, high: number, direction: Direction, level: Level}} Region frequency ratios
- * @typedef {Region & {structure: Structure, points: Point[], lanes: Lane[],
- *   settings: Settings}} Diagram
- */
-
 export const LOWEST = 1e-5; // gaps below are drawn in the strip of zero
 
 /**

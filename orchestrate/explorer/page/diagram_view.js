@@ -49,11 +49,9 @@ export class AxisLimits {
   }
 }
 
-/** @typedef {{x: Axis, gaps: Axis, impacts: Axis}} Axes */
-
 /** Dots of a diagram, in pixels of the screen. */
 export class DotPlate {
-  /** @param {Size} size @param {number} density @param {Axes} axes @param {number} count of responses that will come */
+  /** @param {Size} size @param {number} density @param {DiagramView["axes"]} axes @param {number} count of responses that will come */
   constructor({ width, height }, density, axes, count) {
     const pixels = { width: Math.round(width * density), height: Math.round(height * density) };
     this.canvas = Object.assign(document.createElement("canvas"), pixels);

@@ -11,8 +11,6 @@ const PACE = 60; // ms between two requests
 const STEPS = 1200; // communication steps in each
 const SWEEP = 2e-4; // V/s of a ramp, times the largest voltage
 
-/** @typedef {{time: number, voltage: number, speed: number, impacts: number}} Row */
-
 export class DrivePanel {
   /** @param {(id: string) => HTMLElement} at @param {WorkerPool} pool @param {Start} start */
   constructor(at, pool, start) {

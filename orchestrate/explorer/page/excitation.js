@@ -2,8 +2,6 @@
 
 import { omegaOf } from "./structure.js";
 
-/** @typedef {{unit: "paper" | "g" | "mm", value: number}} Level acceleration in g, or amplitude in mm */
-
 export const GRAVITY = 9.80665; // m/s²
 /** @type {Level} */
 export const PAPER = { unit: "paper", value: 1 };

@@ -9,12 +9,10 @@ export function saveFile(name, blob) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-/** @typedef {{head: string[], rows: Iterable<(number | string)[]>}} Table */
-
 /**
  * A table as CSV, numbers in the shortest form that reads back the same; the page stays alive.
  * @param {string} name
- * @param {Table} table
+ * @param {Sheet} table
  */
 export async function saveCsv(name, { head, rows }) {
   const lines = [`${head.join(",")}\n`];

@@ -9,11 +9,6 @@ import { formatNumber } from "./scale.js";
 import { Sound } from "./audio.js";
 import { averageWords, exponentWords, responseNumbers, responseSentence } from "./response_words.js";
 
-/**
- * @typedef {import("./response.js").Response} Response
- * @typedef {{point: Point, start: number[], settings: Settings, level: Level}} Choice
- */
-
 const POINTS = 200; // a period
 const LONG = 20000; // periods of a section that runs on
 
@@ -33,7 +28,7 @@ export class Inspector {
     this.choice = null;
     /** @type {Order[]} */
     this.orders = [];
-    /** @type {{response: Response, motion: Motion} | null} */
+    /** @type {{response: Settled, motion: Motion} | null} */
     this.found = null;
     /** @type {any} */
     this.spectra = null;
@@ -83,7 +78,7 @@ export class Inspector {
     return order;
   }
 
-  /** @param {{response: Response, motion: Motion}} found */
+  /** @param {{response: Settled, motion: Motion}} found */
   receiveMotion(found) {
     this.found = found;
     this.setMotionState("there");
@@ -110,7 +105,7 @@ export class Inspector {
 
   showNumbers() {
     const { point, level } = /** @type {Choice} */ (this.choice);
-    const { response, motion } = /** @type {{response: Response, motion: Motion}} */ (this.found);
+    const { response, motion } = /** @type {{response: Settled, motion: Motion}} */ (this.found);
     this.at("sentence").textContent = responseSentence(response, this.exponent, motion.contact.some(Boolean), openingLevelWords(point, level));
     this.at("average").textContent = averageWords(response.gaps.length);
     this.at("average").classList.toggle("absent", repeatPeriods(response) > 0 || !response.impacts);

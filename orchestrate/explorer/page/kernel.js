@@ -2,16 +2,6 @@
 
 import { omegaOf } from "./structure.js";
 
-/**
- * @typedef {{structures: Record<string, {size: number, fields: Record<string, [Kind, number]>}>, set: Record<string, number>, pushes: Record<string, string>,
- *   reals: string[], booleans: string[], read: string[], series: string[], counts: string[],
- *   capacity: number, traits: string[], deviating: string[], exponent: Record<string, number>}} Loops fields: kind and place; capacity: states that a step keeps
- * @typedef {{module: WebAssembly.Module, variables: Record<string, Record<string, number>>, loops: Loops}} Compiled variables: their references, by model
- * @typedef {"u32" | "i32" | "f64" | "u8"} Kind
- * @typedef {{value: number, error: number, verdict: number}} Exponent per unit of tau, with its standard error; 1 chaotic, −1 converging, 0 undecided
- * @typedef {{order: Float64Array, amplitude: Float64Array}} Spectrum lines over the excitation's
- */
-
 const WIDTH = { u32: 4, i32: 4, f64: 8, u8: 1 };
 const [PAUSED, BROKEN] = [1, 2]; // what a loop answers
 const WORK = 10000; // periods, steps and impacts between two pauses: a few milliseconds

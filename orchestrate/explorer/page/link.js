@@ -2,12 +2,6 @@
 
 import { isSameLevel, LEVELS } from "./excitation.js";
 
-/**
- * @typedef {{structure: Structure, level: Level, low: number, high: number,
- *   direction: "up" | "down" | "both", eta: number | null, start: number[] | null}} View
- * @typedef {Record<string, [number, number]>} Ranges of the numbers of a structure
- */
-
 /** Frequency ratios that a view may have. @type {[number, number]} */
 export const ETAS = [1e-3, 1000];
 

@@ -2,13 +2,6 @@
 
 import { periodOf } from "./structure.js";
 
-/**
- * @typedef {{time: Float64Array, states: Float64Array, contact: Uint8Array,
- *   impactTime: Float64Array, impactSpeed: Float64Array, impactPlace: Float64Array,
- *   impactEnergy: Float64Array, period: number, first: number, points: number}} Motion
- *   of each impact: closing speed, the common displacement of both masses, energy lost in J
- */
-
 const TOLD = ["impact_velocity", "x1", "impact_energy"];
 
 /**

@@ -6,11 +6,7 @@ import { gapsOf, traitsOf } from "./model.js";
 import { Picture } from "./picture.js";
 import { axisScale, axisWords } from "./units.js";
 
-/**
- * @typedef {"history" | "phase" | "section" | "spectrum"} Name
- * @typedef {{title: string, orders?: {frequency: number[], amplitude: number[][]},
- *   lines?: {frequency: number[], amplitude: number[]}}} Measured in Hz and m/s²; a row for each order
- */
+/** @typedef {"history" | "phase" | "section" | "spectrum"} Name */
 
 const FEW = 24; // places of a section that are drawn as larger dots
 

@@ -5,7 +5,7 @@ import { pointAt } from "./excitation.js";
 import { axisToPixels } from "./scale.js";
 import { gapUnit } from "./units.js";
 
-/** Draws them. @param {import("./payload.js").Table} table @param {DiagramView} view @returns {Draw} */
+/** Draws them. @param {Table} table @param {DiagramView} view @returns {Draw} */
 export function branchOverlay({ branches, bifurcations, structure }, view) {
   return (pen, size, theme) => {
     const [left, top, width, height] = panelPlaces(size).gaps;

@@ -1,15 +1,5 @@
 /** What the page carries: the compiled kernel, tables, and where the responses of a sweep begin. */
 
-/**
- * @typedef {{variables: Compiled["variables"], loops: Loops, drive: Start,
- *   structure: Structure, usual: Structure, ranges: Record<string, [number, number]>, units: Units,
- *   alike: number, settings: Settings, directions: ("up" | "down")[], count: number,
- *   low: number, high: number, level: ["paper" | "g" | "mm", number],
- *   shown: Asked, tour: Record<string, string>,
- *   record: Measured | null, branches: {x: number[], y: number[], stable: boolean}[],
- *   bifurcations: {eta: number, gap: number, kind: string}[]}} Table
- */
-
 /** @param {string} id */
 function elementText(id) {
   return document.getElementById(id)?.textContent ?? "";

@@ -1,11 +1,5 @@
 /** Two pens with the same strokes: one draws on a canvas, one writes SVG. */
 
-/**
- * @typedef {{stroke?: string, fill?: string, width?: number, dash?: number[], alpha?: number}} Style
- * @typedef {{anchor?: "start" | "middle" | "end", turn?: boolean, size?: number, fill?: string}} Lettering
- * @typedef {CanvasPen | SvgPen} Pen
- */
-
 const FONT = "system-ui, sans-serif";
 
 export class CanvasPen {

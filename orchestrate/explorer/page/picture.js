@@ -5,11 +5,6 @@ import { drawCaption, captionHeight, wrapLines } from "./caption.js";
 import { CanvasPen, SvgPen } from "./pen.js";
 import { currentTheme } from "./theme.js";
 
-/**
- * @typedef {{width: number, height: number}} Size
- * @typedef {(pen: Pen, size: Size, theme: Theme) => void} Draw
- */
-
 const FINE = 2; // pixels of a saved picture, at the least, for one of the page's
 
 export class Picture {

@@ -3,8 +3,6 @@
 import { startOfResponse, startOfChain } from "./diagram.js";
 import { joinOrders } from "./worker_pool.js";
 
-/** @typedef {(lane: Lane, found: Found) => void} Take */
-
 /** Indices of a list, coarse ones first. @param {number} count */
 export function indicesCoarseFirst(count) {
   const found = [];

@@ -3,13 +3,6 @@
 import { gapsOf } from "./model.js";
 import { lengthOf } from "./structure.js";
 
-/**
- * @typedef {{transient: number, samples: number, tolerance: number}} Settings
- * @typedef {{states: Float64Array, gaps: Float64Array, peak: number, impacts: number,
- *   contact: boolean, multiplicity: number, decided: number, start: number[], end: number[]}} Response
- *   gaps and peak over a eta^2; four numbers a state; where it is undecided the multiplicity is a guess
- */
-
 export const USUAL = { transient: 500, samples: 200, tolerance: 1e-2 };
 export const REPEATED = 1;
 export const UNDECIDED = 2;
@@ -22,7 +15,7 @@ export const DECIDED = ["irregular", "repeated", "undecided"];
  * @param {Iterable<number>} start
  * @param {Settings} settings
  * @param {boolean} [decides] whether its multiplicity is decided; else the instance stands at the last sample
- * @returns {Generator<undefined, Response>} it pauses
+ * @returns {Generator<undefined, Settled>} it pauses
  */
 export function* computeResponse(oscillator, point, start, settings, decides = true) {
   const { states, largest, impacts, end, counts } = yield* oscillator.respond(point, start, settings, decides);

@@ -5,14 +5,9 @@ import { repeatPeriods, UNDECIDED } from "./response.js";
 import { formatNumber } from "./scale.js";
 import { axisScale, axisWords } from "./units.js";
 
-/**
- * @typedef {import("./response.js").Response} Response
- * @typedef {"chaotic" | "converging" | "undecided"} Kind
- */
-
 const DIGITS = 3; // of a mean number of impacts, wherever it is shown
 
-/** What an exponent says. @param {Exponent} exponent @returns {Kind} */
+/** What an exponent says. @param {Exponent} exponent */
 export const exponentKind = ({ verdict }) => (verdict > 0 ? "chaotic" : verdict < 0 ? "converging" : "undecided");
 
 /** The same in words, with its standard error. @param {Exponent | null} exponent @param {number} repeats its period in those of the box, 0 if none */
@@ -36,7 +31,7 @@ export function repeatWords(motion, exponent) {
   return undecided ? "undecided" : "irregular";
 }
 
-/** Numbers of a response for people. @param {Response} response @param {Point} point @param {Level} level @param {Exponent | null} [exponent] @returns {Record<string, string>} */
+/** Numbers of a response for people. @param {Settled} response @param {Point} point @param {Level} level @param {Exponent | null} [exponent] @returns {Record<string, string>} */
 export function responseNumbers(response, point, level, exponent) {
   const { peak, impacts, contact } = response;
   const { eta, frequency, amplitude } = point;
@@ -63,7 +58,7 @@ export function responseNumbers(response, point, level, exponent) {
 /** How much a mean is worth, of a motion that does not repeat. @param {number} periods of the mean */
 export const averageWords = (periods) => `averages over ${periods} periods; from another start they differ by some per cent`;
 
-/** Whether the halves stay together, at either end of a play. @param {Response} response */
+/** Whether the halves stay together, at either end of a play. @param {Settled} response */
 const staysShut = ({ peak, impacts, contact, gaps }) => peak === 0 || (contact && !impacts && gaps.every((gap) => peak - gap < 1e-9));
 
 /** So many impacts a period, or a revolution. @param {number} impacts @param {string} [each] */
@@ -75,7 +70,7 @@ export function impactCountWords(impacts, each = "a period") {
 /** The same of a motion: of periods that differ it is the mean. @param {number} impacts @param {number} multiplicity */
 export const meanImpactCountWords = (impacts, multiplicity) => `${multiplicity === 1 ? "" : "on average "}${impactCountWords(impacts)}`;
 
-/** A response in a sentence. @param {Response} response @param {Exponent | null | undefined} exponent if it is known @param {boolean} seen whether contact is among what is shown @param {string} opening what is said of halves that stay closed */
+/** A response in a sentence. @param {Settled} response @param {Exponent | null | undefined} exponent if it is known @param {boolean} seen whether contact is among what is shown @param {string} opening what is said of halves that stay closed */
 export function responseSentence(response, exponent, seen, opening) {
   const { impacts, contact } = response;
   const periods = repeatPeriods(response);
@@ -89,7 +84,7 @@ export function responseSentence(response, exponent, seen, opening) {
   return `${unrepeatedWords(response, exponent)}, ${count}${contact ? sticks : ""}.`;
 }
 
-/** Where there is an exponent, it decides. @param {Response} response @param {Exponent | null | undefined} exponent */
+/** Where there is an exponent, it decides. @param {Settled} response @param {Exponent | null | undefined} exponent */
 function unrepeatedWords({ decided, multiplicity, gaps }, exponent) {
   const guess = multiplicity ? `, perhaps after ${periodCountWords(multiplicity)}` : "";
   const undecided = `Undecided whether it repeats${guess}`;

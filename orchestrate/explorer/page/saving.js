@@ -36,7 +36,7 @@ export function saveShown(words, { eta, regions, inspector, basin, drive }) {
     else shown[name].saveSvg(file, caption);
     return `${file}.${kind} saved`;
   }
-  /** @type {Record<string, () => import("./files.js").Table | null>} */
+  /** @type {Record<string, () => Sheet | null>} */
   const tables = {
     diagram: () => diagramCsv(regions.diagram),
     section: () => (section.length ? sectionCsv(section) : null),

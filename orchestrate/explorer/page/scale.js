@@ -1,7 +1,5 @@
 /** Axes: from numbers to pixels, and the ticks between. */
 
-/** @typedef {{low: number, high: number, log?: boolean, label?: string}} Axis */
-
 /** @param {Axis} axis @param {number} from @param {number} to @returns {(value: number) => number} */
 export function axisToPixels({ low, high, log }, from, to) {
   if (!log) return (value) => from + ((value - low) / (high - low)) * (to - from);

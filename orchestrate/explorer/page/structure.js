@@ -1,14 +1,5 @@
 /** A structure and its excitation: SI numbers, and the paper's. */
 
-/**
- * @typedef {{m1: number, m2: number, k1: number, k2: number, d1: number, d2: number,
- *   e: number, gamma: number, bonded: number, clearance: number, stroke: number, wall: number,
- *   box_acceleration: number, force1: number, force2: number}} Structure with what pushes it besides
- * @typedef {Record<string, {label: string, kg: number, m: number, s: number}>} Units names and exponents
- * @typedef {{omega: number, mu: number, kappa: number, D1: number, D2: number}} Ratios
- * @typedef {{structure: Structure, eta: number, frequency: number, amplitude: number}} Point
- */
-
 const TURN = 2 * Math.PI;
 /** @type {Record<string, keyof Structure>} what a slider of the paper's beam, without units, is called besides */
 const SAME = { xi0: "clearance", play: "stroke", push: "box_acceleration", push1: "force1", push2: "force2" };
@@ -18,7 +9,7 @@ export function omegaOf(s) {
   return Math.sqrt(s.k1 / s.m1);
 }
 
-/** The paper's numbers, (2) and (8). @param {Structure} s @returns {Ratios} */
+/** The paper's numbers, (2) and (8). @param {Structure} s */
 export function ratiosOf(s) {
   const omega = omegaOf(s);
   return {

@@ -1,8 +1,7 @@
 /** Colours of the pictures: those of the style sheet, light or dark. */
 
-const NAMES = /** @type {const} */ (["paper", "ink", "soft", "grid", "one", "two", "hit", "contact", "mark", "up", "down"]);
-
-/** @typedef {Record<typeof NAMES[number], string>} Theme */
+/** @type {(keyof Theme)[]} */
+const NAMES = ["paper", "ink", "soft", "grid", "one", "two", "hit", "contact", "mark", "up", "down"];
 
 export function currentTheme() {
   const style = getComputedStyle(document.documentElement);

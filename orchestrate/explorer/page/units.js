@@ -4,16 +4,6 @@ import { GRAVITY, isInHertz } from "./excitation.js";
 import { formatNumber } from "./scale.js";
 import { lengthOf, omegaOf, periodOf } from "./structure.js";
 
-/**
- * @typedef {{frequency: "Hz" | "rpm" | "rad/s" | "eta", length: "m" | "mm" | "um",
- *   acceleration: "g" | "m/s2", time: "" | "s" | "periods"}} Asked of a beam of one's own; a time
- *   that is named is for the paper's beam too
- * @typedef {{length: number, speed: number, time: number, line: number, acceleration: number}} Scale
- *   what is one on the axes, in m, m/s, s and m/s²; `line`: what the excitation's frequency is there
- * @typedef {{frequency: string, gap: string, gapSpeed: string, place: string, speed: string,
- *   time: string, line: string, acceleration: string}} Words
- */
-
 const SIZES = { Hz: 2 * Math.PI, rpm: (2 * Math.PI) / 60, "rad/s": 1, m: 1, mm: 1e-3, um: 1e-6, g: GRAVITY, "m/s2": 1 };
 /** @type {Record<string, string>} */
 const SPELLED = { um: "µm", "m/s2": "m/s²" };
@@ -62,7 +52,7 @@ export function unitsOption(level) {
   return !isInHertz(level) || names === "Hz,mm,g" ? "" : ` --units ${names}`;
 }
 
-/** @param {Level} level @returns {Words} */
+/** @param {Level} level */
 export function axisWords(level) {
   if (!isInHertz(level)) return { ...PAPER, time: TIMES[asked.time || "periods"] };
   const length = shownUnit("length").name;
@@ -94,7 +84,7 @@ function frequencyOfOne(structure, level) {
   return SIZES[asked.frequency];
 }
 
-/** @param {Point} point @param {Level} level @returns {Scale} */
+/** What is one on the axes, in m, m/s, s and m/s²; `line`: what the excitation's frequency is there. @param {Point} point @param {Level} level */
 export function axisScale(point, level) {
   const period = periodOf(point);
   if (isInHertz(level)) {

@@ -1,13 +1,11 @@
 /** Impacts as a waveform: each a click by its energy. */
 
-/** @typedef {{time: ArrayLike<number>, energy: ArrayLike<number>, turns: number}} Clicks time in periods */
-
 const DECAY = 0.0025; // s
 const RING = 1800; // Hz
 
 /**
  * Clicks as a waveform.
- * @param {Clicks} clicks
+ * @param {{time: ArrayLike<number>, energy: ArrayLike<number>, turns: number}} clicks time in periods
  * @param {number} pitch periods a second
  * @param {number} rate samples a second
  * @returns {Float32Array}

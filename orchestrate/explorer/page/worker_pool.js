@@ -1,7 +1,5 @@
 /** The workers: tasks are handed to them, parts of answers come back, tasks can be called off. */
 
-/** @typedef {{cancel: () => void, done: Promise<void>}} Order */
-
 /** As many workers as cores, less one for the page, and at most four. */
 export function workerCount() {
   return Math.max(1, Math.min(4, (navigator.hardwareConcurrency || 2) - 1));
