@@ -9,10 +9,8 @@ const FLASH = 0.04; // of a period
 export class Animation {
   /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
-    /** @type {Motion | null} */
-    this.motion = null;
-    /** @type {Point | null} */
-    this.point = null;
+    this.motion = /** @type {Motion | null} */ (null);
+    this.point = /** @type {Point | null} */ (null);
     this.turn = 0; // periods since the motion's beginning
     this.offset = 0; // m: the gap of unloaded springs
     this.speed = 2 ** -1.5; // periods a second

@@ -4,10 +4,8 @@
 export class Sound {
   constructor() {
     this.wanted = false; // motions that are shown next are heard too
-    /** @type {AudioContext | null} */
-    this.context = null;
-    /** @type {AudioBufferSourceNode | null} */
-    this.source = null;
+    this.context = /** @type {AudioContext | null} */ (null);
+    this.source = /** @type {AudioBufferSourceNode | null} */ (null);
   }
 
   /** No more, whatever is shown next. */

@@ -22,15 +22,11 @@ export class BasinPanel {
     this.pool = pool;
     this.choose = choose;
     this.view = new BasinView(/** @type {HTMLCanvasElement} */ (at("basin")), alike, choose);
-    /** @type {Order | null} */
-    this.order = null;
+    this.order = /** @type {Order | null} */ (null);
     this.told = others;
-    /** @type {Attractor | null} */
-    this.shown = null; // the motion on the page
-    /** @type {Attractor[]} */
-    this.few = []; // to which a few starts lead
-    /** @type {Order | null} */
-    this.trial = null;
+    this.shown = /** @type {Attractor | null} */ (null); // the motion on the page
+    this.few = /** @type {Attractor[]} */ ([]); // to which a few starts lead
+    this.trial = /** @type {Order | null} */ (null);
     this.tried = false; // whether all of the few have come
     this.point = ""; // that is shown
     this.mapped = false; // whether its picture is, or will be

@@ -31,15 +31,11 @@ export class BasinView {
   /** @param {HTMLCanvasElement} canvas @param {number} alike distance within which two motions are one @param {(start: number[]) => void} choose */
   constructor(canvas, alike, choose) {
     this.alike = alike;
-    /** @type {Plane | null} */
-    this.plane = null;
-    /** @type {Point | null} */
-    this.point = null;
+    this.plane = /** @type {Plane | null} */ (null);
+    this.point = /** @type {Point | null} */ (null);
     this.level = PAPER;
-    /** @type {Attractor[]} */
-    this.attractors = [];
-    /** @type {[number, number][]} */
-    this.examples = []; // a cell of each
+    this.attractors = /** @type {Attractor[]} */ ([]);
+    this.examples = /** @type {[number, number][]} */ ([]); // a cell of each
     this.labels = new Int16Array(0);
     this.cells = document.createElement("canvas");
     this.picture = new Picture(canvas, (pen, size, theme) => this.draw(pen, size, theme));

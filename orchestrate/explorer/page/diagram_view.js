@@ -129,21 +129,16 @@ function drawMarks(pen, size, theme, axis, { eta, drag }) {
 export class DiagramView {
   /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
-    /** @type {DotPlate | null} */
-    this.plate = null;
-    /** @type {Diagram | null} */
-    this.diagram = null;
-    /** @type {Diagram | null} */
-    this.below = null; // shown until the new one has come
-    /** @type {[Diagram, Lane, Found][]} */
-    this.queue = [];
+    this.plate = /** @type {DotPlate | null} */ (null);
+    this.diagram = /** @type {Diagram | null} */ (null);
+    this.below = /** @type {Diagram | null} */ (null); // shown until the new one has come
+    this.queue = /** @type {[Diagram, Lane, Found][]} */ ([]);
     this.done = 0; // of the queue
     this.limits = new AxisLimits();
     this.stale = true;
     /** @type {{eta: number | null, drag: [number, number] | null}} */
     this.marks = { eta: null, drag: null };
-    /** @type {((pen: Pen, size: Size, theme: Theme) => void) | null} */
-    this.overlay = null;
+    this.overlay = /** @type {((pen: Pen, size: Size, theme: Theme) => void) | null} */ (null);
     this.picture = new Picture(canvas, (pen, size, theme) => this.draw(pen, size, theme));
     new ResizeObserver(() => this.redrawAll()).observe(canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redrawAll());

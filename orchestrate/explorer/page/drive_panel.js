@@ -23,12 +23,9 @@ export class DrivePanel {
     this.idle = at("drive-status").textContent; // what is said before it runs
     this.running = false;
     this.ramp = 0; // sign of the voltage's change
-    /** @type {Run | null} */
-    this.state = null;
-    /** @type {Row[]} */
-    this.rows = [];
-    /** @type {Order | null} */
-    this.order = null;
+    this.state = /** @type {Run | null} */ (null);
+    this.rows = /** @type {Row[]} */ ([]);
+    this.order = /** @type {Order | null} */ (null);
     at("drive-go").addEventListener("click", () => this.setRunning(!this.running));
     at("ramp-up").addEventListener("click", () => this.startRamp(1));
     at("ramp-down").addEventListener("click", () => this.startRamp(-1));

@@ -24,18 +24,12 @@ export class Inspector {
     this.sound = new Sound();
     this.periods = 10;
     this.pitch = 4; // periods a second that are heard
-    /** @type {Choice | null} */
-    this.choice = null;
-    /** @type {Order[]} */
-    this.orders = [];
-    /** @type {{response: Settled, motion: Motion} | null} */
-    this.found = null;
-    /** @type {any} */
-    this.spectra = null;
-    /** @type {Exponent | null | undefined} */
-    this.exponent = undefined;
-    /** @type {Motion | null} */
-    this.bonded = null;
+    this.choice = /** @type {Choice | null} */ (null);
+    this.orders = /** @type {Order[]} */ ([]);
+    this.found = /** @type {{response: Settled, motion: Motion} | null} */ (null);
+    this.spectra = /** @type {any} */ (null);
+    this.exponent = /** @type {Exponent | null | undefined} */ (undefined);
+    this.bonded = /** @type {Motion | null} */ (null);
     /** @type {Float64Array} */
     this.section = new Float64Array(0);
   }

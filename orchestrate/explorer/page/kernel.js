@@ -57,8 +57,7 @@ export class Buffers {
   /** @param {Library} library */
   constructor(library) {
     this.library = library;
-    /** @type {number[]} */
-    this.taken = [];
+    this.taken = /** @type {number[]} */ ([]);
   }
 
   /** @param {number} bytes */

@@ -25,15 +25,12 @@ export class Regions {
     this.shipped = shipped;
     this.told = told;
     this.view = new DiagramView(canvas);
-    /** @type {Diagram[]} */
-    this.seen = [];
+    this.seen = /** @type {Diagram[]} */ ([]);
     this.place = -1;
     this.complete = false;
-    /** @type {Order | null} */
-    this.order = null;
+    this.order = /** @type {Order | null} */ (null);
     this.timer = 0;
-    /** @type {Diagram | null} */
-    this.coarse = null; // to be refined once it is complete
+    this.coarse = /** @type {Diagram | null} */ (null); // to be refined once it is complete
     this.quick = false; // whether the present diagram is one of low resolution
   }
 
