@@ -16,7 +16,7 @@ from . import labels
 from .colours import BLACK, BLUE, GREY, RED
 from .kinds import BONDED, draws
 from .planes import gap_through_impacts, relative_motion
-from .scales import acceleration_scale, append_unit, frequency_scale, length_scale
+from .scales import acceleration_scale, append_unit, length_scale
 from .spectra import acceleration_spectrum, draw_stems
 from .style import (
     XI_REL,
@@ -105,7 +105,7 @@ def draw_acceleration_spectra(
             axes.set_xticks([])
         return 0.0
     base, top = periods / (time[-1] - time[0]), 0.0
-    (turn, word), (felt, unit_felt) = frequency_scale(data), acceleration_scale(data)
+    (turn, word), (felt, unit_felt) = labels.frequency_scale(data), acceleration_scale(data)
     for number, style in masses:
         moved = data[f"x{number}"].values[1:]
         frequency, amplitude = acceleration_spectrum(moved, time[1] - time[0])

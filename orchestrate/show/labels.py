@@ -135,19 +135,29 @@ def typeset_unit(unit: str) -> str:
     return UNIT_SIGNS.get(unit, unit.replace("um", "µm") if unit.startswith("um") else unit)
 
 
-def format_length(data: xr.Dataset, length: float) -> str:
-    """Format a length in a dataset's display unit, or with an SI prefix."""
-    factor, word = display_scale_of(data, "m")
+def length_unit(data: xr.Dataset, largest: float, unit: str = "m") -> tuple[float, str]:
+    """Return the divisor from m, or m/s, to the display unit, by default with an SI prefix."""
     if not display_units_of(data).length:
-        factor, letter = si_prefix(length)
-        word = f"{letter}m"
-    return f"{length / factor:.4g} {typeset_unit(word)}"
+        factor, prefix = si_prefix(largest)
+        return factor, prefix + unit
+    factor, word = display_scale_of(data, unit)
+    return factor, typeset_unit(word)
+
+
+def format_length(data: xr.Dataset, length: float) -> str:
+    factor, word = length_unit(data, length)
+    return f"{length / factor:.4g} {word}"
+
+
+def frequency_scale(data: xr.Dataset) -> tuple[float, str]:
+    """Return the divisor from rad/s to the display unit of frequencies, by default Hz."""
+    asked = display_units_of(data).frequency
+    return display_scale_of(data, "rad/s") if asked else (TURN, "Hz")
 
 
 def format_frequency(data: xr.Dataset, frequency: float) -> str:
-    """Format a frequency given in rad/s in a dataset's display unit, by default Hz."""
-    asked = display_units_of(data).frequency
-    factor, word = display_scale_of(data, "rad/s") if asked else (TURN, "Hz")
+    """Format a frequency given in rad/s in a dataset's display unit."""
+    factor, word = frequency_scale(data)
     if word == "eta":
         return format_parameters({"eta": float(f"{frequency / factor:.5g}")})
     letter = r"$\Omega$" if word == "rad/s" else r"$\Omega/2\pi$"

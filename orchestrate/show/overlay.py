@@ -17,7 +17,8 @@ from ..model.ranges import OF_LENGTH, STRUCTURE
 from ..units import omega_of, unit_of_xi
 from .colours import BIFURCATION_MARKS, BLUE, RED
 from .kinds import kind_of
-from .scales import ETA, acceleration_scale, axis_values, frequency_scale, parameter_scale_and_label
+from .labels import frequency_scale
+from .scales import ETA, acceleration_scale, axis_values, parameter_scale_and_label
 from .style import draw_line
 
 SAME = 1e-9  # relative: numbers that are nearer than this are one

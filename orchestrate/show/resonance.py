@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from .colours import BLACK, DIRECTION_STYLES, GREY, STRUCTURES
 from .kinds import BRANCHES, draws
-from .labels import title_from_attributes
+from .labels import frequency_scale, title_from_attributes
 from .lines import MAX_DISTINCT, MarkStyle, marker_keywords
 from .overlay import place_over_responses
 from .scales import (
@@ -23,7 +23,6 @@ from .scales import (
     acceleration_scale,
     append_unit,
     axis_values,
-    frequency_scale,
     length_scale,
     varied_dimension,
 )

@@ -11,13 +11,19 @@ from ..errors import InputError
 from ..units import (
     FACTORS,
     OVER_OMEGA,
-    display_scale_of,
     display_units_of,
     omega_of,
     shows_lengths_as_ratios,
     unit_of_xi,
 )
-from .labels import gap_name, has_frequency_unit, si_prefix, symbol_with_unit, typeset_unit
+from .labels import (
+    frequency_scale,
+    gap_name,
+    has_frequency_unit,
+    length_unit,
+    symbol_with_unit,
+    typeset_unit,
+)
 from .style import XI_REL
 
 ETA = symbol_with_unit("eta")
@@ -56,22 +62,9 @@ def varied_dimension(data: xr.DataArray) -> str:
     return varied_dimensions(data, 1)[0]
 
 
-def frequency_scale(data: xr.Dataset) -> tuple[float, str]:
-    """Return the divisor from rad/s to the display unit of frequencies, and that unit."""
-    if display_units_of(data).frequency:
-        return display_scale_of(data, "rad/s")
-    return FACTORS["frequency"]["Hz"], "Hz"
-
-
 def length_scale(data: xr.Dataset, largest: float, unit: str = "m") -> tuple[float, str]:
     """Return the divisor from m, or m/s, to the display unit, and that unit; none of a ratio."""
-    if shows_lengths_as_ratios(data):
-        return 1.0, ""
-    if not display_units_of(data).length:
-        factor, prefix = si_prefix(largest)
-        return factor, prefix + unit
-    factor, word = display_scale_of(data, unit)
-    return factor, typeset_unit(word)
+    return (1.0, "") if shows_lengths_as_ratios(data) else length_unit(data, largest, unit)
 
 
 def displayed_lengths(

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from ..units import display_units_of, with_units
 from .colours import BLACK, BLUE, ORANGE, STRUCTURES
 from .kinds import draws
-from .labels import format_frequency, has_frequency_unit, title_from_attributes
-from .scales import acceleration_scale, append_unit, frequency_scale
+from .labels import format_frequency, frequency_scale, has_frequency_unit, title_from_attributes
+from .scales import acceleration_scale, append_unit
 from .style import add_figure_legend, make_panels, styled
 
 LEAST_SHOWN = 1e-4  # of the largest line of a harmonic response
