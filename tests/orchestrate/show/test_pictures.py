@@ -40,32 +40,28 @@ def test_a_picture_is_written_whole_or_not_at_all(tmp_path):
 def test_all_samples_are_in_an_orbit_diagram():
     for count in (40, 700):
         data = made.sweep(count)
-        figure, _ = made.rendered(lines.draw_sweep(data))
-        top = figure.axes[0]
+        top = lines.draw_sweep(data).axes[0]
         marked = np.concatenate([line.get_xydata() for line in top.lines if len(line.get_xdata())])
         low, high = top.get_ylim()
         assert low < 0.0 < data.xi_rel.max() < high
-        place = top.transLimits.transform(top.transScale.transform(marked))
         x = np.repeat(data.eta.values, data.sizes["sample"])
         points = np.column_stack([x, data.xi_rel.values.ravel()])
-        wanted = top.transLimits.transform(top.transScale.transform(points))
-        have = set(map(tuple, (place * lines.CELLS).astype(int).tolist()))
-        need = set(map(tuple, (wanted * lines.CELLS).astype(int).tolist()))
+        places = [(top.transScale + top.transLimits).transform(xy) for xy in (points, marked)]
+        cells = [(place * lines.CELLS).astype(int).tolist() for place in places]
+        need, have = (set(map(tuple, each)) for each in cells)
         assert need <= have
         assert len(marked) <= len(points)
 
 
 def test_a_structure_in_si_is_told_in_hertz_and_metres():
     for si in (False, True):
-        top, bottom = lines.draw_sweep(made.sweep(si=si)).axes
+        data = made.sweep(si=si)
+        top, bottom = lines.draw_sweep(data).axes
         assert (bottom.get_xlabel() == scales.FREQUENCIES["Hz"]) == si
         assert (top.get_ylabel() == "gap $x_2 - x_1$ in mm, at $t = nT$") == si
-    data = made.sweep(si=True)
     expected = float((data.xi_rel * 1e-3 * data.eta**2).max()) / 1e-3
-    drawn = max(line.get_ydata().max() for line in lines.draw_sweep(data).axes[0].lines)
-    assert drawn == pytest.approx(expected)
-    axis = lines.draw_sweep(data).axes[1].lines[0].get_xdata()
-    assert axis[-1] == pytest.approx(1.3 * 75.0 / (2.0 * np.pi))
+    assert max(line.get_ydata().max() for line in top.lines) == pytest.approx(expected)
+    assert bottom.lines[0].get_xdata()[-1] == pytest.approx(1.3 * 75.0 / TURN)
 
 
 BEAM = Structure.nondimensional().replace(omega=75.0)
