@@ -4,7 +4,7 @@ import { omegaOf } from "./structure.js";
 
 const WIDTH = { u32: 4, i32: 4, f64: 8, u8: 1 };
 const [PAUSED, BROKEN] = [1, 2]; // what a loop answers
-const WORK = 10000; // periods, steps and impacts between two pauses: a few milliseconds
+export const WORK = 10000; // periods, steps and impacts between two pauses: a few milliseconds
 const PIECE = 100; // periods of one step of a transient, at most
 const DEVIATED = ["x1", "x2", "v1", "v2", "impact_velocity"];
 const SAMPLED = 4; // periods of a spectrum's states between two pauses
@@ -197,39 +197,6 @@ export class Oscillator {
       library.calls.acceleration_spectrum(states, 4, count, periods, point.frequency, point.amplitude, memory, amplitudes);
       const amplitude = library.copyNumbers(amplitudes, highest * periods + 1);
       return { order: Float64Array.from(amplitude, (_, line) => line / periods), amplitude };
-    } finally {
-      buffers.free();
-    }
-  }
-
-  /**
-   * A response after a transient, from a state at phase 0, as the loop has it.
-   * @param {Point} point
-   * @param {Iterable<number>} start
-   * @param {{transient: number, samples: number, tolerance: number}} settings
-   * @param {boolean} decides whether its multiplicity is decided; the instance continues for that
-   * @returns {Generator<undefined, {states: Float64Array, largest: number, impacts: number, end: number[], counts: Record<string, number>}>}
-   */
-  *respond(point, start, { transient, samples, tolerance }, decides) {
-    const { calls, loops } = this.library;
-    const buffers = new Buffers(this.library);
-    try {
-      const places = {
-        ...{ states: buffers.array("f64", 4 * samples), ends: buffers.array("f64", 4), largest: buffers.array("f64", 1) },
-        ...{ impacts: buffers.array("f64", 1), counts: buffers.array("i32", loops.counts.length) },
-      };
-      const more = { transients: buffers.array("u32", [transient, 0]), memory: buffers.array("f64", calls.memory_size(samples)) };
-      const asked = { samples, tolerance, decides: Number(decides), ...more, ...places };
-      const task = this.responseTask(buffers, point, start, asked);
-      yield* this.loop("respond", this.own, task, buffers.newStructure("ResponseProgress", {}), WORK);
-      const counts = this.library.viewMemory("i32", places.counts, loops.counts.length);
-      return {
-        states: this.library.copyNumbers(places.states, 4 * samples),
-        largest: this.library.copyNumbers(places.largest, 1)[0],
-        impacts: this.library.copyNumbers(places.impacts, 1)[0],
-        end: Array.from(this.library.copyNumbers(places.ends, 4)),
-        counts: Object.fromEntries(loops.counts.map((name, i) => [name, counts[i]])),
-      };
     } finally {
       buffers.free();
     }
