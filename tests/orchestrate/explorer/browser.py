@@ -1,7 +1,6 @@
 """Headless Chromium with the explorer in it, driven by selenium."""
 
 import base64
-import json
 import time
 
 import numpy as np
@@ -57,7 +56,7 @@ class Browser:
 
     def console(self):
         """What went wrong since this was asked last."""
-        return [json.dumps(line) for line in self.driver.get_log("browser")]
+        return self.driver.get_log("browser")
 
     def open(self, page, fragment="", whole=True):
         """Show a page anew, and wait until its whole diagram is there."""

@@ -39,15 +39,6 @@ def pasted(tmp_path, monkeypatch):
     return run
 
 
-def own(browser):
-    """Choose the units of a beam of one's own, as a hand does."""
-    browser.run(
-        "const units = document.getElementById('units'); units.value = 'own';"
-        "units.dispatchEvent(new Event('change'))"
-    )
-    browser.until(READY)
-
-
 SHOWN = {  # states of the page: a link's words, and what is done then
     "first": ("", ""),
     "both directions": ("#from=1.2&to=1.25&direction=both&eta=1.22", ""),
@@ -120,7 +111,11 @@ def test_a_wall_a_play_and_forces_are_chosen_by_hand(browser):
     found = browser.numbers("explorer.inspector.found.response.gaps")
     assert found.tobytes() == expected.xi_rel.values.tobytes()
     assert float(expected.impacts_per_period[0]) > 0.0
-    own(browser)
+    browser.run(
+        "const units = document.getElementById('units'); units.value = 'own';"
+        "units.dispatchEvent(new Event('change'))"
+    )
+    browser.until(READY)
     assert float(browser.get("force1", "value")) != 0.3  # 1 g is another unit of length
     assert browser.run("return explorer.inspector.found.response.impacts") == pytest.approx(
         float(expected.impacts_per_period[0]), abs=0.05
