@@ -3,7 +3,7 @@
 import { isInHertz } from "./excitation.js";
 import { formatNumber } from "./scale.js";
 import { fieldNumbers } from "./structure.js";
-import { frequencyName, levelInShownUnit, shownUnit, axisScale } from "./units.js";
+import { isRatioShown, levelInShownUnit, shownUnit, axisScale } from "./units.js";
 
 const SIZE = 11; // px of a letter
 const LINE = 16; // px
@@ -38,7 +38,7 @@ export function beamWords(point, level) {
 }
 
 /** @param {number} value of the axis */
-const frequencyText = (value) => (frequencyName().startsWith("ratio") ? `η = ${formatNumber(value, 6)}` : `${formatNumber(value, 6)} ${frequencyName()}`);
+const frequencyText = (value) => (isRatioShown() ? `η = ${formatNumber(value, 6)}` : `${formatNumber(value, 6)} ${shownUnit("frequency").name}`);
 
 /** Texts in lines that fit. @param {string[]} texts @param {number} width px */
 export function wrapLines(texts, width) {

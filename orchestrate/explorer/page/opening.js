@@ -3,7 +3,7 @@
 import { GRAVITY, isInHertz } from "./excitation.js";
 import { traitsOf } from "./model.js";
 import { formatNumber } from "./scale.js";
-import { frequencyName, ratioUnit, levelInShownUnit } from "./units.js";
+import { isRatioShown, ratioUnit, levelInShownUnit, shownUnit } from "./units.js";
 
 const MOST = 3; // ranges that are named
 
@@ -37,7 +37,7 @@ function openingRanges({ points, lanes, structure, level }) {
   const starts = open.flatMap((now, i) => (now && !open[i - 1] ? [i] : []));
   const ends = open.flatMap((now, i) => (now && !open[i + 1] ? [i] : []));
   if (starts.length > MOST) return `in ${starts.length} ranges of frequencies`;
-  const asRatio = !isInHertz(level) || frequencyName().startsWith("ratio");
+  const asRatio = !isInHertz(level) || isRatioShown();
   const ranges = starts.map((start, i) => `from ${place(start)} to ${place(ends[i])}`).join(" and ");
-  return asRatio ? `only ${ranges.replaceAll("from ", "from η = ")}` : `only ${ranges} ${frequencyName()}`;
+  return asRatio ? `only ${ranges.replaceAll("from ", "from η = ")}` : `only ${ranges} ${shownUnit("frequency").name}`;
 }

@@ -5,7 +5,7 @@ import { watchNumber, showNumber } from "./field.js";
 import { ETAS } from "./link.js";
 import { formatNumber } from "./scale.js";
 import { lengthOf, rescaled } from "./structure.js";
-import { frequencyName, ratioUnit, levelOfTyped, levelInShownUnit, shownUnitNames, shownUnit, ratioOfShown } from "./units.js";
+import { isRatioShown, ratioUnit, levelOfTyped, levelInShownUnit, shownUnitNames, shownUnit, ratioOfShown } from "./units.js";
 
 /**
  * @typedef {{choose: (eta: number, exactly: boolean) => void,
@@ -28,7 +28,7 @@ export class Shaking {
     this.units = units;
     this.structure = structure;
     this.level = level;
-    at("hertz-label").textContent = frequencyName().startsWith("ratio") ? `as ${frequencyName()}` : `in ${frequencyName()}`;
+    at("hertz-label").textContent = isRatioShown() ? "as ratio η = Ω/ω" : `in ${shownUnit("frequency").name}`;
     at("own").textContent = `your own: ${shownUnitNames()}`;
     this.connectFields(acts);
   }

@@ -19,7 +19,7 @@ let asked = USUAL;
 export const setShownUnits = (units) => (asked = units);
 
 /** Whether frequencies of a beam of one's own are shown as ratios. */
-const isRatioShown = () => asked.frequency === "eta";
+export const isRatioShown = () => asked.frequency === "eta";
 
 /** The unit of a kind of numbers of a beam of one's own: its name, and how many Hz, mm or g it is. @param {"frequency" | "length" | "acceleration"} kind */
 export function shownUnit(kind) {
@@ -27,11 +27,8 @@ export function shownUnit(kind) {
   return { name: SPELLED[word] ?? word, size: SIZES[/** @type {keyof SIZES} */ (word)] / SIZES[USUAL[kind]] };
 }
 
-/** The unit of the shaking's frequency. */
-export const frequencyName = () => (isRatioShown() ? "ratio η = Ω/ω" : shownUnit("frequency").name);
-
 /** All units of a beam of one's own. */
-export const shownUnitNames = () => [isRatioShown() ? "η" : frequencyName(), shownUnit("length").name, shownUnit("acceleration").name].join(", ");
+export const shownUnitNames = () => [isRatioShown() ? "η" : shownUnit("frequency").name, shownUnit("length").name, shownUnit("acceleration").name].join(", ");
 
 /** How strongly the box is shaken. @param {Level} level */
 export function levelInShownUnit({ unit, value }) {
@@ -55,15 +52,15 @@ export function unitsOption(level) {
 /** @param {Level} level */
 export function axisWords(level) {
   if (!isInHertz(level)) return { ...PAPER, time: TIMES[asked.time || "periods"] };
-  const length = shownUnit("length").name;
+  const [length, frequency] = [shownUnit("length").name, shownUnit("frequency").name];
   return {
-    frequency: isRatioShown() ? RATIO : `shaking frequency, ${frequencyName()}`,
+    frequency: isRatioShown() ? RATIO : `shaking frequency, ${frequency}`,
     gap: `gap, ${length}`,
     gapSpeed: `gap velocity, ${length}/s`,
     place: `displacement, ${length}`,
     speed: `velocity, ${length}/s`,
     time: TIMES[asked.time || "s"],
-    line: isRatioShown() ? "frequency / ω" : `frequency, ${frequencyName()}`,
+    line: isRatioShown() ? "frequency / ω" : `frequency, ${frequency}`,
     acceleration: `acceleration, ${shownUnit("acceleration").name}`,
   };
 }
