@@ -17,7 +17,7 @@ export class Regions {
    * @param {WorkerPool} pool
    * @param {Diagram | null} shipped
    * @param {{low: number, high: number}} whole
-   * @param {(complete: boolean) => void} told when something has come
+   * @param {() => void} told when something has come
    */
   constructor(canvas, pool, shipped, whole, told) {
     this.pool = pool;
@@ -81,23 +81,21 @@ export class Regions {
   compute(diagram, parent) {
     this.order?.cancel();
     this.complete = false;
-    this.view.showDiagram(diagram, parent && parent !== diagram ? parent : null);
-    /** @type {Take} */
-    const take = (lane, found) => this.view.addResponse(lane, found);
-    const order = requestDiagram(this.pool, diagram, parent, take);
+    this.view.showDiagram(diagram, parent);
+    const order = requestDiagram(this.pool, diagram, parent, (lane, found) => this.view.addResponse(lane, found));
     this.order = order;
     void order.done.then(() => {
       if (this.order !== order) return;
       this.complete = true;
       this.view.dropDiagramBelow();
-      this.told(true);
+      this.told();
       if (this.coarse !== diagram) return;
       // the whole again, as fine as the paper's Figure 6
       this.coarse = null;
       this.seen[this.place] = emptyDiagram(diagram.structure, diagram, FINE, USUAL);
       this.compute(this.diagram, diagram);
     });
-    this.told(false);
+    this.told();
   }
 
   /** What was seen before, or after. @param {number} steps */
@@ -113,7 +111,7 @@ export class Regions {
     this.order = null;
     this.complete = true;
     this.view.showDiagram(diagram, null);
-    this.told(true);
+    this.told();
   }
 
   /** Follow parameters that are being changed: quickly now, in full once they rest. @param {Structure} structure @param {Level} level @param {number} held factor of frequency ratios */
