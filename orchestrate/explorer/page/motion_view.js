@@ -27,7 +27,7 @@ export function motionPictures(at) {
     pictures[name].describe(words);
     pictures[name].redraw();
   };
-  return { pictures, show };
+  return { charts, pictures, show };
 }
 
 /** Columns of a motion as the axes have them: time from its beginning, displacements from rest, where pressed halves touch. @param {Motion} motion @param {Point} point @param {Level} level */

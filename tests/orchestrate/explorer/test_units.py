@@ -11,17 +11,11 @@ from .conftest import typed
 
 BEAM = orchestrate.Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.007)
 SHOWN = """
-const kept = {};
-const { inspector, regions } = explorer;
-const old = inspector.pictures.show;
-inspector.pictures.show = (name, chart, words) => (kept[name] = chart);
-inspector.drawMotion();
-inspector.drawSection();
-inspector.drawSpectrum();
-inspector.pictures.show = old;
-const axes = Object.values(kept).map(({ x, y }) => [x.label, y.label]);
-const [left, right] = [kept.history, kept.spectrum].map(({ x }) => x.high);
-return [[regions.view.axes.x.label, regions.view.axes.gaps.label], ...axes, left, right];
+const { charts } = explorer.inspector.pictures;
+const { x, gaps } = explorer.regions.view.axes;
+const names = ["history", "phase", "section", "spectrum"];
+const axes = names.map((name) => [charts[name].x.label, charts[name].y.label]);
+return [[x.label, gaps.label], ...axes, charts.history.x.high, charts.spectrum.x.high];
 """
 ASKED = {  # the words of the frequency, the length, the acceleration, the time on axes; their sizes
     "rad/s, um, m/s2": ("rad/s", "µm", "m/s²", "s", 1.0, 1e-6, 1.0),
