@@ -81,8 +81,9 @@ def draw_samples(
     column, row = cell_index(axes.xaxis, x, columns), cell_index(axes.yaxis, samples, rows)
     cell = (column[:, None] * rows + row).ravel()
     # one sample of each occupied cell of the panel, and how many lie there
-    _, from_end, count = np.unique(cell[::-1], return_index=True, return_counts=True)
-    chosen = len(cell) - 1 - from_end
+    chosen, count = np.full(columns * rows, -1), np.bincount(cell, minlength=columns * rows)
+    chosen[cell] = np.arange(len(cell))
+    chosen, count = chosen[count > 0], count[count > 0]
     ends = [*(minimum for minimum, _ in SHADES[1:]), np.inf]
     for (minimum, opacity), end in zip(SHADES, ends, strict=True):
         of_shade = chosen[(count >= minimum) & (count < end)]

@@ -67,9 +67,7 @@ export class Inspector {
 
   /** @param {string} task @param {unknown} asked @param {(parts: any[]) => void} take @param {boolean} [urgent] */
   request(task, asked, take, urgent) {
-    const order = this.pool.ask(task, asked, take, urgent);
-    this.orders.push(order);
-    return order;
+    this.orders.push(this.pool.ask(task, asked, take, urgent));
   }
 
   /** @param {{response: Settled, motion: Motion}} found */
