@@ -136,16 +136,12 @@ def convert_quantities(text: str, units: Mapping[str, str]) -> str:
 
 
 def tour_in_units(units: Mapping[str, str]) -> tuple[Step, ...]:
-    return tuple(
-        replace(
-            step,
-            text=convert_quantities(step.text, units),
-            stops=tuple(
-                replace(stop, label=convert_quantities(stop.label, units)) for stop in step.stops
-            ),
-        )
-        for step in STEPS
-    )
+    steps = []
+    for step in STEPS:
+        labels = (convert_quantities(stop.label, units) for stop in step.stops)
+        stops = (replace(stop, label=label) for stop, label in zip(step.stops, labels, strict=True))
+        steps.append(Step(step.title, convert_quantities(step.text, units), tuple(stops)))
+    return tuple(steps)
 
 
 TOUR = tour_in_units(USUAL)
