@@ -7,10 +7,8 @@ import { DECIDED } from "./response.js";
 export function diagramCsv({ points, lanes, settings }) {
   function* rows() {
     for (const { direction, found } of lanes) {
-      for (let i = 0; i < found.length; i++) {
-        const one = found[i];
-        if (!one) continue;
-        yield [direction, points[i].eta, one.impacts, one.multiplicity, DECIDED[one.decided], one.peak, ...one.gaps];
+      for (const one of found) {
+        if (one) yield [direction, points[one.index].eta, one.impacts, one.multiplicity, DECIDED[one.decided], one.peak, ...one.gaps];
       }
     }
   }
