@@ -92,7 +92,12 @@ def draw_test_plan(data: xr.Dataset, title: str = "") -> Figure:
 @draws("detect", "fit")
 @styled
 def draw_orders_and_fits(data: xr.Dataset, title: str = "") -> Figure:
-    data = with_hypothesis_dimension(in_display_units(data))
+    data = in_display_units(data)
+    if "hypothesis" not in data.dims:  # a single fit
+        fitted = {name: data[name] for name in ("fitted", "misfit", "misfit_at") if name in data}
+        one = xr.Dataset(fitted).drop_vars("hypothesis", errors="ignore")
+        name = str(data.attrs.get("hypothesis", "fit"))
+        data = data.drop_vars(list(fitted)).merge(one.expand_dims(hypothesis=[name]))
     channels = [str(channel) for channel in data.channel.values]
     rows, columns = data.sizes["order"], len(channels)
     size, title = (1.5 + 6.0 * columns, 0.9 + 1.9 * rows), title or data.attrs.get("title", "")
@@ -123,16 +128,6 @@ def draw_orders_and_fits(data: xr.Dataset, title: str = "") -> Figure:
         plane.set_xlabel(label_with_unit("frequency of the excitation", data.frequency))
     add_figure_legend(figure, axes, 3)
     return figure
-
-
-def with_hypothesis_dimension(data: xr.Dataset) -> xr.Dataset:
-    """Return a result with the dimension ``hypothesis``, added if it has a single fit."""
-    if "hypothesis" in data.dims:
-        return data
-    fitted = {name: data[name] for name in ("fitted", "misfit", "misfit_at") if name in data}
-    one = xr.Dataset(fitted).drop_vars("hypothesis", errors="ignore")
-    name = str(data.attrs.get("hypothesis", "fit"))
-    return data.drop_vars(list(fitted)).merge(one.expand_dims(hypothesis=[name]))
 
 
 def names_of_best_fits(data: xr.Dataset) -> list[str]:

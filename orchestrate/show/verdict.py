@@ -81,10 +81,20 @@ def scalar_or_nan(answer: xr.Dataset, name: str) -> float:
 
 
 def verdict_sections(answer: xr.Dataset) -> list[Section]:
-    front = (decision_section, fits_section, record_section)
-    appendix = (parameter_section, misfit_section, assumption_section)
-    made = [section_of(answer) for section_of in (*front, *appendix)]
-    return [section for section in made if section is not None]
+    reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
+    points = [f"What decided: {make_sentence(reason)}"] if reason else []
+    if settle:
+        points.append(f"What would change or settle it: {make_sentence(settle)}")
+    sections: list[Section | None] = [Section("Why", points=points, place="front")]
+    if "measured" in answer and "fitted" in answer:
+        picture = draw_orders_and_fits(answer.assign_attrs(title=""))
+        picture.set_size_inches(max(7.6, 0.7 * picture.get_figwidth()), 4.0)  # near that on paper
+        words = "What was measured, and what the best structures of each kind do, order by order."
+        heading = "The measurement over the fits"
+        sections.append(Section(heading, picture=picture, caption=words, place="front"))
+    makers = (record_section, parameter_section, misfit_section, assumption_section)
+    sections += [section_of(answer) for section_of in makers]
+    return [section for section in sections if section is not None]
 
 
 def record_section(answer: xr.Dataset) -> Section | None:
@@ -155,25 +165,8 @@ def base_level_text(answer: xr.Dataset, *levels: float) -> str:
     return f"{numbers} {unit.replace('m/s2', 'm/s²')}" if all(map(math.isfinite, levels)) else ""
 
 
-def decision_section(answer: xr.Dataset) -> Section:
-    reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
-    points = [f"What decided: {make_sentence(reason)}"] if reason else []
-    if settle:
-        points.append(f"What would change or settle it: {make_sentence(settle)}")
-    return Section("Why", points=points, place="front")
-
-
 def make_sentence(words: str) -> str:
     return f"{words[:1].upper()}{words[1:].rstrip('.')}."
-
-
-def fits_section(answer: xr.Dataset) -> Section | None:
-    if "measured" not in answer or "fitted" not in answer:
-        return None
-    picture = draw_orders_and_fits(answer.assign_attrs(title=""))
-    picture.set_size_inches(max(7.6, 0.7 * picture.get_figwidth()), 4.0)  # near that on paper
-    words = "What was measured, and what the best structures of each kind do, order by order."
-    return Section("The measurement over the fits", picture=picture, caption=words, place="front")
 
 
 def misfit_section(answer: xr.Dataset) -> Section | None:

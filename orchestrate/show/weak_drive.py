@@ -72,7 +72,14 @@ def draw_ramps(
     add_figure_legend(figure, axes[:2], title="upper panels")
     for panel in axes[2:]:
         add_legend_below(panel)
-    limit_axes(axes, list(shown.values()))
+    ends = {}  # of the runs: the theory's curves extend beyond them
+    for quantity in ("voltage", "speed", "amplitude"):
+        values = np.concatenate([data[quantity].values for data in shown.values()])
+        ends[quantity] = (values.min(), values.max()) if values.size else (0.0, 1.0)
+    for panel, (low, high) in zip(axes[:2], ends.values(), strict=False):
+        panel.set_xlim(low, high + 1e-3 * max(high - low, 1e-9))
+    axes[0].set_ylim(*axes[1].get_xlim())
+    axes[1].set_ylim(0.0, 1.05 * ends["amplitude"][1])
     return figure
 
 
@@ -206,18 +213,6 @@ def label_speed_axes(axes: Sequence[Axes], data: xr.Dataset) -> None:
     speed, amplitude = (label_with_unit(HISTORIES[name], data[name]) for name in HISTORIES)
     axes[0].set(xlabel="voltage in V", ylabel=speed)
     axes[1].set(xlabel=speed, ylabel=amplitude)
-
-
-def limit_axes(axes: Sequence[Axes], runs: Sequence[xr.Dataset]) -> None:
-    """Limit the axes to the runs: the theory's curves extend beyond them."""
-    ends = {}
-    for name in ("voltage", "speed", "amplitude"):
-        values = np.concatenate([data[name].values for data in runs])
-        ends[name] = (values.min(), values.max()) if values.size else (0.0, 1.0)
-    for panel, (low, high) in zip(axes[:2], ends.values(), strict=False):
-        panel.set_xlim(low, high + 1e-3 * max(high - low, 1e-9))
-    axes[0].set_ylim(*axes[1].get_xlim())
-    axes[1].set_ylim(0.0, 1.05 * ends["amplitude"][1])
 
 
 # -- starts from rest -----------------------------------------------------------------------------
