@@ -49,24 +49,19 @@ export class BasinView {
       this.cursor = this.cellAt(event.offsetX, event.offsetY);
       start(this.cursor);
     });
-    canvas.addEventListener("keydown", (event) => {
-      if (event.key === "Enter") start(this.cursor);
-      else if (!this.moveCursor(event.key)) return;
-      event.preventDefault();
-    });
-  }
-
-  /** Move the cursor by a key; whether it was one that does. @param {string} key */
-  moveCursor(key) {
     /** @type {Record<string, [number, number]>} */
     const ways = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-    if (!ways[key] || !this.plane) return false;
-    const { side } = this.plane;
-    const from = this.cursor ?? [side / 2, side / 2];
-    const [column, row] = ways[key].map((way, i) => Math.min(Math.max(from[i] + way, 0), side - 1));
-    this.cursor = [column, row];
-    this.picture.redraw();
-    return true;
+    canvas.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") start(this.cursor);
+      else if (ways[event.key] && this.plane) {
+        const { side } = this.plane;
+        const from = this.cursor ?? [side / 2, side / 2];
+        const [column, row] = ways[event.key].map((way, i) => Math.min(Math.max(from[i] + way, 0), side - 1));
+        this.cursor = [column, row];
+        this.picture.redraw();
+      } else return;
+      event.preventDefault();
+    });
   }
 
   /** Nothing to show. */

@@ -7,10 +7,7 @@ import { formatNumber } from "./scale.js";
 import { lengthOf, rescaled } from "./structure.js";
 import { isRatioShown, ratioUnit, levelOfTyped, levelInShownUnit, shownUnitNames, shownUnit, ratioOfShown } from "./units.js";
 
-/**
- * @typedef {{choose: (eta: number, exactly: boolean) => void,
- *   change: (structure: Structure, level: Level) => void}} Acts
- */
+/** @typedef {{choose: (eta: number, exactly: boolean) => void, change: (structure: Structure, level: Level) => void}} Acts */
 
 /** @type {Level} */
 const FIRST = { unit: "g", value: 1 };
@@ -20,7 +17,7 @@ const OMEGA = 2 * Math.PI * 40; // of a first beam of one's own, rad/s
 
 export class Shaking {
   /** @param {(id: string) => HTMLElement} at @param {Units} units @param {Structure} structure @param {Level} level @param {Acts} acts */
-  constructor(at, units, structure, level, acts) {
+  constructor(at, units, structure, level, { choose, change }) {
     /** @param {string} id */
     const input = (id) => /** @type {HTMLInputElement} */ (at(id));
     this.at = at;
@@ -30,27 +27,21 @@ export class Shaking {
     this.level = level;
     at("hertz-label").textContent = isRatioShown() ? "as ratio η = Ω/ω" : `in ${shownUnit("frequency").name}`;
     at("own").textContent = `your own: ${shownUnitNames()}`;
-    this.connectFields(acts);
-  }
-
-  /** @param {Acts} acts */
-  connectFields({ choose, change }) {
-    const { eta, number, hertz, level } = this.inputs;
-    watchNumber(eta, (value) => choose(value, false), "input");
-    watchNumber(number, (value) => choose(value, true));
-    watchNumber(hertz, (value) => {
+    watchNumber(this.inputs.eta, (value) => choose(value, false), "input");
+    watchNumber(this.inputs.number, (value) => choose(value, true));
+    watchNumber(this.inputs.hertz, (value) => {
       const ends = ETAS.map((end) => end * ratioUnit(this.structure, this.level));
       if (value < ends[0] || value > ends[1]) return `expected ${ends.map((end) => formatNumber(end)).join(" to ")} for this beam`;
       choose(ratioOfShown(value, this.structure, this.level), true);
     });
-    watchNumber(level, (value) => change(this.structure, levelOfTyped(value, this.level)));
-    this.at("own-beam").addEventListener("click", () => {
+    watchNumber(this.inputs.level, (value) => change(this.structure, levelOfTyped(value, this.level)));
+    at("own-beam").addEventListener("click", () => {
       if (!isInHertz(this.level)) change(...this.beamInOtherUnits(true));
-      const first = /** @type {HTMLInputElement} */ (this.at("f1")); // ready to be typed into
+      const first = input("f1"); // ready to be typed into
       first.scrollIntoView({ block: innerWidth > 900 ? "nearest" : "center" });
       first.select();
     });
-    this.at("units").addEventListener("change", ({ target }) => {
+    at("units").addEventListener("change", ({ target }) => {
       change(...this.beamInOtherUnits(/** @type {HTMLSelectElement} */ (target).value === "own"));
     });
   }
@@ -59,9 +50,9 @@ export class Shaking {
   beamInOtherUnits(own) {
     const [omega, level] = own ? [OMEGA, FIRST] : [1, PAPER];
     const digits = own ? 17 : 12;
-    const other = rescaled(this.structure, this.units, omega, 1, 1, digits);
+    const other = rescaled(this.structure, this.units, omega, 1, digits);
     const [from, to] = [pointAt(this.structure, 1, this.level), pointAt(other, 1, level)].map(lengthOf);
-    return [rescaled(this.structure, this.units, omega, 1, to / from, digits), level];
+    return [rescaled(this.structure, this.units, omega, to / from, digits), level];
   }
 
   /** @param {Structure} structure @param {Level} level */

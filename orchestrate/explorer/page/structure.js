@@ -80,17 +80,16 @@ export function fieldNumbers(s) {
 }
 
 /**
- * The same motions in other units: all ratios stay.
+ * The same motions in other units, with a mass 1 of 1 kg: all ratios stay.
  * @param {Structure} s
  * @param {Units} units of its parameters
  * @param {number} omega rad/s
- * @param {number} mass of mass 1, kg
  * @param {number} length factor of what is a length
  * @param {number} digits that are kept: fewer than all, so that there and back is the same
  * @returns {Structure}
  */
-export function rescaled(s, units, omega, mass, length, digits) {
-  const [masses, rates] = [mass / s.m1, omega / omegaOf(s)];
+export function rescaled(s, units, omega, length, digits) {
+  const [masses, rates] = [1 / s.m1, omega / omegaOf(s)];
   /** @type {Record<string, number>} */
   const changed = { ...s };
   for (const [name, { kg, m, s: seconds }] of Object.entries(units)) {
