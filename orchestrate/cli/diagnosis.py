@@ -269,6 +269,6 @@ The sensors are by default as fast as the sweep needs, with a noise of 1e-3 (m/s
             yield "no verdict is right at these levels: raise --g, or lower the --noise"
         if not data.attrs["clearance"]:
             yield "faces that touch open at every level; try pressed ones too: --set preload=20um"
-        rows = printing.columns_of(data, "level verdict sound_verdict opening overload", form=".3g")
         titles = {"verdict": "verdict on the guess", "sound_verdict": "on its sound twin"}
-        yield from printing.table_lines({titles.get(title, title): rows[title] for title in rows})
+        names = ", ".join([*titles.values(), "opening", "overload"])
+        yield from printing.table_lines(data.rename(titles), names, ".3g")

@@ -9,20 +9,13 @@ from typing import Annotated, Any, Literal
 
 import orchestrate
 
+from .. import units
 from ..constants import GRAVITY, TURN
 from ..errors import InputError
 from ..flags import flag_word
 from ..lazy import xr
 from ..model import PARAMETERS, Structure
 from ..model.ranges import PUSHES
-from ..units import (
-    display_units_of,
-    format_quantity,
-    format_quantity_range,
-    parameter_of,
-    shows_lengths_as_ratios,
-    with_units,
-)
 from . import printing
 from .answer import FunctionCommand, Runs, has_several_values
 from .command import Keywords, option
@@ -37,6 +30,8 @@ from .options import (
     parse_continued_parameter,
 )
 from .output import ResultFiles, Results, Stored, result_file_stem
+
+MOST_ROWS = 10  # of the exponents of a range
 
 
 class Lyapunov(OfStructure, OfBox, Over, FunctionCommand, Stored, Results):
@@ -64,12 +59,12 @@ decided with so few --periods."""
         return structure, question
 
     def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
-        spectrum = " exponents:.5g kaplan_yorke_dimension" * ("exponents" in data)
+        spectrum = ", exponents:.5g, kaplan_yorke_dimension" * ("exponents" in data)
         name = printing.varied_parameter_name(data)
-        rows = data.sortby("exponent", ascending=False).transpose(name, ...)
-        shown = f"{name} exponent standard_error verdict{spectrum}"
-        yield from printing.table_lines(printing.columns_of(rows, shown), printing.MOST_ROWS)
-        if data.sizes[name] > printing.MOST_ROWS:
+        names = f"exponent, standard_error, verdict{spectrum}"
+        rows = data.sortby("exponent", ascending=False)
+        yield from printing.table_lines(rows, names, most=MOST_ROWS)
+        if data.sizes[name] > MOST_ROWS:
             yield "the largest is biased by its error: repeat it, with another --transient"
         yield from printing.count_lines(data, data.verdict)
         neutral = data.isel({name: printing.flag_mask(data.verdict, "neutral").values})
@@ -102,22 +97,19 @@ def simulate_from_state(data: xr.Dataset, state: xr.DataArray, periods: int) -> 
     varied = {name: data[name].item() for name in PARAMETERS if name in data.coords}
     structure = Structure.from_attributes(data.attrs).replace(**varied)
     names = ("frequency", "amplitude", *PUSHES)
-    box: Keywords = {name: float(parameter_of(data, name, 0.0)) for name in names}
+    box: Keywords = {name: float(units.parameter_of(data, name, 0.0)) for name in names}
     motion = orchestrate.simulate(structure, **box, start=state.values, periods=periods)
-    return with_units(motion, display_units_of(data))
+    return units.with_units(motion, units.display_units_of(data))
 
 
 def attractor_table_lines(data: xr.Dataset, over: str = "") -> Iterator[str]:
     """Yield a table of attractors: share, period, impacts, how decided, largest gap, a state."""
     rows = data.stack(row=(*filter(None, [over]), "attractor"), create_index=False)
     rows = rows.isel(row=rows.multiplicity.notnull().values).transpose("row", ...)
-    names = f"{over} attractor share multiplicity impacts_per_period decided_by"
-    columns = printing.columns_of(rows, names, form=".4g")
-    parts = [rows.isel(row=i) for i in range(rows.sizes["row"])]
-    columns["largest gap"] = [printing.format_largest_gap(part) for part in parts]
-    in_si = " (SI)" * (not shows_lengths_as_ratios(data))
-    (columns[f"state at phase 0{in_si}"],) = printing.columns_of(rows, "state").values()
-    yield from printing.table_lines(columns)
+    names = "attractor, share, multiplicity, impacts_per_period, decided_by, xi_rel_max"
+    state = f"state at phase 0{' (SI)' * (not units.shows_lengths_as_ratios(data))}"
+    rows, names = rows.rename(state=state), f"{over}, {names}".removeprefix(", ")
+    yield from printing.table_lines(rows, f"{names}, {state}:.6g", ".4g")
 
 
 class Attractors(OfStructure, OfBox, Over, FunctionCommand, Stored, Results):
@@ -146,10 +138,10 @@ alone may miss one whose basin is small."""
             return
         shares = data.share.where(data.multiplicity.notnull())
         shown = data.assign(least_share=shares.min(name), largest_share=shares.max(name))
-        columns = printing.stacked_columns_of(shown, "least_share:.1% largest_share:.1%")
-        ends = zip(data.first_found.values.flat, data.last_found.values.flat, strict=True)
-        found = [printing.format_range(data, name, *pair) for pair in ends]
-        yield from printing.table_lines({**columns, "found at": found})
+        ends = zip(data.first_found.values, data.last_found.values, strict=True)
+        found = [printing.format_parameter(data, name, *pair) for pair in ends]
+        shown = shown.assign({"found at": ("attractor", found)})
+        yield from printing.table_lines(shown, "least_share:.1%, largest_share:.1%, found at")
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         from ..show.planes import draw_phase_curves
@@ -185,7 +177,7 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
         axes = [data[name] for name in data.attractor_of.dims]
         ends = [(axis.min().item(), axis.max().item(), str(axis.attrs["units"])) for axis in axes]
         sides = [
-            f"{a.name} {format_quantity_range(data, *end)}"
+            f"{a.name} {units.format_quantity_range(data, *end)}"
             for a, end in zip(axes, ends, strict=True)
         ]
         yield f"{data.sizes['attractor']} found, of {started} starts in {', '.join(sides)}"
@@ -200,7 +192,7 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
             )
             exponent, error = mixed.uncertainty_exponent, mixed.uncertainty_exponent_error
             if math.isfinite(exponent):
-                (words,) = printing.format_with_errors(exponent, error, ".3g")
+                words = printing.format_with_error(float(exponent), float(error), ".3g")
                 yield f"uncertainty exponent {words} (1: smooth boundaries)"
 
 
@@ -235,10 +227,10 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle."""
         yield "multipliers " + ", ".join(f"{real:.6f}{other:+.6f}i" for real, other in parts)
         for time, speed in zip(data.impact_time.values, data.impact_velocity.values, strict=True):
             if math.isfinite(time):
-                closing = format_quantity(data, speed, "m/s")
+                closing = units.format_quantity(data, speed, "m/s")
                 yield f"impact at {printing.format_time(data, time, '.8g')}, closing at {closing}"
-        periods, states = printing.columns_of(data, "sample state", form=".8g").values()
-        yield from printing.table_lines({"period": periods, "state at phase 0": states})
+        rows = data.rename(sample="period", state="state at phase 0")
+        yield from printing.table_lines(rows, "period, state at phase 0", ".8g")
         yield from printing.describe(data, "xi_rel_max")
 
 
@@ -262,11 +254,9 @@ What starts next to a saddle with one multiplier outside the unit circle leaves 
         yield f"saddle: multiplier {float(data.multiplier):.6f}"
         yield from printing.describe(data, "x_rel")
         breaks = [int((data.break_side == i).sum()) for i in range(data.sizes["side"])]
-        size = data.arclength.max("point") / data.orbit_size
-        sides = {"points": data.arclength.count("point"), "size": size, "breaks": ("side", breaks)}
-        columns = printing.columns_of(data.assign(sides), "side end points breaks size:.4g")
-        columns["length over the orbit's size"] = columns.pop("size")
-        yield from printing.table_lines(columns)
+        size, length = data.arclength.max("point") / data.orbit_size, "length over the orbit's size"
+        sides = {"points": data.arclength.count("point"), length: size, "breaks": ("side", breaks)}
+        yield from printing.table_lines(data.assign(sides), f"end, points, breaks, {length}:.4g")
 
 
 def branch_end_lines(data: xr.Dataset) -> Iterator[str]:
@@ -304,7 +294,7 @@ The excitation says where a first orbit is looked for; without it that is the lo
         yield from printing.count_lines(data, data.stability)
         rows = data.rename({"bifurcation_value": f"bifurcation_{name}"} if count else {})
         rows = rows.assign(bifurcation_number=("bifurcation", range(count)))
-        yield from printing.listing_lines(rows, "bifurcation", f"number kind {name}:.8f")
+        yield from printing.listing_lines(rows, "bifurcation", f"number, kind, {name}:.8f")
         yield from branch_end_lines(data)
 
     def replace_level_by_amplitude(self, structure: Structure, first: float) -> None:
@@ -396,7 +386,7 @@ structure and excitation are those of that branch."""
         if not curves:
             raise InputError(f"--start {self.start}: no bifurcation that can be followed")
         name = result_file_stem("border_all", self.source_file_stems(), structure, question)
-        shown = [with_units(curve, self.display_units(question)) for curve in curves]
+        shown = [units.with_units(curve, self.display_units(question)) for curve in curves]
         files = ResultFiles.from_options(self, name, fresh=True)
         files.write_pictures(partial(orchestrate.plot, *shown))
 
@@ -406,5 +396,5 @@ structure and excitation are those of that branch."""
         for name in names:
             both = [printing.format_parameter(data, name, data[name][i]) for i in (0, -1)]
             yield f"from {' to '.join(both)}, within {printing.format_full_range(data, name)}"
-        yield from printing.listing_lines(data, "codimension_two", f"kind {' '.join(names)}")
+        yield from printing.listing_lines(data, "codimension_two", ", ".join(["kind", *names]))
         yield from branch_end_lines(data)

@@ -189,7 +189,7 @@ class Shake(
 
 MASSES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 ANALYSES = {  # of --show: the public function, what it shows; whose peaks, what else is printed
-    "frf": ("frf", "frequency response and coherence", "magnitude", "random_error coherence"),
+    "frf": ("frf", "frequency response and coherence", "magnitude", "random_error, coherence"),
     "psd": ("psd", "power spectral density", "psd", "rms"),
     "orders": ("track_orders", "orders of a swept sine", "amplitude", ""),
     "harmonics": ("harmonics", "harmonics and their distortion", "distortion", ""),
@@ -197,29 +197,29 @@ ANALYSES = {  # of --show: the public function, what it shows; whose peaks, what
     "shock": ("shock_spectrum", "shock response spectrum", "maximax", ""),
     "density": (
         *("probability_density", "probability density, skewness", ""),
-        "skewness skewness_error kurtosis kurtosis_error standard_deviation",
+        "skewness, skewness_error, kurtosis, kurtosis_error, standard_deviation",
     ),
 }
 SHOWN = ", ".join(f"{name} ({row[1]})" for name, row in ANALYSES.items())
 
 
-def peak_columns_of_analysis(name: str, data: xr.Dataset) -> printing.Columns:
-    """Return a row for each channel, and each order: the largest value, and where it is."""
+def analysis_peak_lines(name: str, data: xr.Dataset) -> Iterator[str]:
+    """Yield a row for each channel, and each order: the largest value, and where it is."""
     if name in ("orders", "harmonics"):  # of the box they are those of the excitation
         data = data.drop_sel(channel="box_acceleration", errors="ignore")
     data = data.assign_coords(channel=[MASSES[str(one)] for one in data.channel.values])
     _, _, variable, others = ANALYSES[name]
     if not variable:
-        return printing.columns_of(data, f"channel {others}")
+        yield from printing.table_lines(data, others)
+        return
     peaks = data[variable]
     if name == "frf":
         peaks = peaks.sel(estimator="H1", drop=True).where(data.excited > 0)
     along = [dim for dim in peaks.dims if dim not in ("channel", "order")]
     top = data.assign({variable: peaks}).isel(peaks.fillna(-1.0).argmax(along))
-    where = "at:.5g time:.4g" if "time" in top.coords else "at:.5g"
-    return printing.stacked_columns_of(
-        top.assign(at=top.frequency), f"{variable}:.4g {where} {others}"
-    )
+    where = "at:.5g, time:.4g" if "time" in top.coords else "at:.5g"
+    shown = f"{variable}:.4g, {where}{others and f', {others}'}"
+    yield from printing.table_lines(top.assign(at=top.frequency), shown)
 
 
 class Settings(Options):
@@ -309,7 +309,7 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Funct
 
     def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         yield ANALYSES[self.analysis][1]
-        yield from printing.table_lines(peak_columns_of_analysis(self.analysis, data))
+        yield from analysis_peak_lines(self.analysis, data)
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         from ..show.analysis import draw
@@ -414,9 +414,8 @@ is a guess: --structure of diagnose, plan and others; complete it by e and clear
             name, _, text = str(error).partition(": ")
             path = dict(zip(("record", "other"), self.records, strict=False)).get(name, name)
             raise InputError(f"{path}: {text}" if text else name) from None
-        fitted = "mass+mass_error frequency+frequency_error damping+damping_error"
-        columns = printing.columns_of(fits, f"knocked {fitted} misfit:.1%", form=".5g")
-        print(*printing.table_lines(columns), sep="\n")
+        fitted = "mass+mass_error, frequency+frequency_error, damping+damping_error"
+        print(*printing.table_lines(fits, f"{fitted}, misfit:.1%", ".5g"), sep="\n")
         print("e = {e:g} and clearance = {clearance:g} m are assumed".format(**fits.attrs))
         if self.output is not None:
             print(self.output)
@@ -443,8 +442,8 @@ they are, the last line says what is missing."""
 
         reading = self.given_options(Reading)
         found = orchestrate.channels(self.record, **reading, output=self.output)
-        rows = printing.columns_of(found, "column role known quantity unit rms:.4g")
-        print(*printing.table_lines(rows), sep="\n")
+        names = "column, role, known, quantity, unit, rms:.4g"
+        print(*printing.table_lines(found, names), sep="\n")
         if proposed := found.role.values[found.known.values == BY_ORDER].tolist():
             columns = found.column.values[found.known.values == BY_ORDER].tolist()
             said = [f'"{one}" as {role}' for one, role in zip(columns, proposed, strict=True)]

@@ -1,6 +1,6 @@
 """How commands print a result: its variables by what their attributes say, and tables.
 
-Which variables: ``shows`` and ``summary`` of a command's class.
+Which variables: ``shows`` and ``summary_lines`` of a command's class.
 Sentences that one command prints stand with it.
 """
 
@@ -15,9 +15,8 @@ from typing import Any
 
 from .. import units
 from ..flags import flag_word, flag_words, runs_of_true
-from ..lazy import np, xr
+from ..lazy import xr
 
-MOST_ROWS = 10  # of the exponents of a range
 MOST_WORDS = 4  # of a variable that are counted, the most frequent ones
 PARAMETERS = ("eta", "frequency", "level")  # shown in Hz and g unless other units are asked for
 SIDES = ("direction", "structure")  # dimensions that are no parameter
@@ -32,8 +31,7 @@ HINTS = {  # words of results, alone or of a variable, and what to do
     "multiplicity_decided: undecided": "slow to converge or nearly periodic; --transient 5000 "
     "decides most",
 }
-COLUMN = re.compile(r"(\w+)(?:\+(\w+))?(?::(\S+))?")  # a variable, its error, their format
-Columns = dict[str, list[str]]  # of a table: cells by title
+COLUMN = re.compile(r"([^ ,+:][^,+:]*)(?:\+(\w+))?(?::([^,]+))?")  # a variable, its error, format
 
 # -- variables ------------------------------------------------------------------------------------
 
@@ -51,39 +49,30 @@ def describe(data: xr.Dataset, names: str) -> Iterator[str]:
     for array in (data[name] for name in known):
         if not array.notnull().any():
             continue
+        unit = str(array.attrs.get("units", "1"))
         if array.ndim and ("flag_meanings" in array.attrs or array.dtype.kind in "iU"):
             yield from count_lines(data, array)
         elif {*array.dims} <= parameters:
             top = data.isel(array.argmax(...))
-            dims = map(str, reversed(array.dims))
-            where = ", ".join(format_scalar_parameter(top, dim) for dim in dims)
-            text = f"{short_meaning(array)}: {format_value(top, array.name)}"
-            yield f"{text} at {where}" if where else text
-        else:
-            unit, root = str(array.attrs.get("units", "1")), float((array**2).mean()) ** 0.5
-            text = units.format_quantity_range(data, float(array.min()), float(array.max()), unit)
-            mean = f", rms {units.format_quantity(data, root, unit, '.4g')}" * (
-                "time" in array.dims
+            text = flag_word(top[array.name]) or units.format_quantity(
+                data, top[array.name], unit, ".4g"
             )
-            yield f"{short_meaning(array)}: {text}{mean}"
+            if array.name == "xi_rel_max":
+                text = format_largest_gap(top)
+            dims = map(str, reversed(array.dims))
+            where = ", ".join(format_parameter(top, dim, top[dim].item()) for dim in dims)
+            yield f"{short_meaning(array)}: {text}{f' at {where}' if where else ''}"
+        else:
+            ends, root = (float(array.min()), float(array.max())), float((array**2).mean()) ** 0.5
+            text = units.format_quantity_range(data, *ends, unit)
+            mean = f", rms {units.format_quantity(data, root, unit, '.4g')}"
+            yield f"{short_meaning(array)}: {text}{mean if 'time' in array.dims else ''}"
 
 
 def short_meaning(array: xr.DataArray) -> str:
     if array.name == "xi_rel_max":
         return "largest gap"
     return re.split("[,;:]", str(array.attrs.get("long_name", array.name)))[0]
-
-
-def format_value(data: xr.Dataset, name: Any) -> str:
-    if name == "xi_rel_max":
-        return format_largest_gap(data)
-    unit = str(data[name].attrs.get("units", "1"))
-    return flag_word(data[name]) or units.format_quantity(data, data[name], unit, ".4g")
-
-
-def format_scalar_parameter(data: xr.Dataset, name: str) -> str:
-    value = data[name]
-    return format_parameter(data, name, value) if value.dtype.kind in "if" else str(value.item())
 
 
 def count_lines(data: xr.Dataset, array: xr.DataArray) -> Iterator[str]:
@@ -95,11 +84,15 @@ def count_lines(data: xr.Dataset, array: xr.DataArray) -> Iterator[str]:
     known = Counter(array.values[array.notnull().values].tolist()).most_common()
     words = flag_words(array.attrs) if "flag_meanings" in array.attrs else {}
     name = str(array.name).replace("_", " ")
+
+    def format_share(count: int) -> str:
+        return f"{count:,} ({100.0 * count / array.size:.0f} %)"
+
     for one, count in known[:MOST_WORDS]:
         word = one if isinstance(one, str) else words.get(int(one), f"{name} {one:g}")
         word = {"yes": name, "no": f"no {name}"}.get(word, word)
         holds = array == one
-        line = f"{word}: {format_share(count, holds.size)}"
+        line = f"{word}: {format_share(count)}"
         for case in itertools.product(*(holds[dim].values.tolist() for dim in sides)):
             part = holds.sel(dict(zip(sides, case, strict=True)))
             if along and part.any():
@@ -107,78 +100,13 @@ def count_lines(data: xr.Dataset, array: xr.DataArray) -> Iterator[str]:
                 line += f"{which} at {format_ranges(data, along, part.values, 3)}"
         yield line
         yield from hint_lines([f"{array.name}: {word}"])
-    if len(known) > MOST_WORDS:
-        rest = sum(count for _, count in known[MOST_WORDS:])
-        yield f"another {name}: {format_share(rest, array.size)}"
+    if rest := sum(count for _, count in known[MOST_WORDS:]):
+        yield f"another {name}: {format_share(rest)}"
 
 
 def hint_lines(words: Iterable[str]) -> Iterator[str]:
     """Yield what to do about those words of a result after which more can be done."""
     yield from (f"{word.rpartition(': ')[2]}: {HINTS[word]}" for word in words if word in HINTS)
-
-
-# -- tables ---------------------------------------------------------------------------------------
-
-
-def table_lines(columns: Mapping[str, Iterable[str]], most: int | None = None) -> Iterator[str]:
-    rows = list(zip(*columns.values(), strict=True))
-    shown = [tuple(columns), *rows[:most]]
-    widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
-    for row in shown:
-        cells = (f"{cell:{width}}" for cell, width in zip(row, widths, strict=True))
-        yield f"  {'  '.join(cells)}".rstrip()
-    if more := len(rows) + 1 - len(shown):
-        yield f"  ... and {more} more"
-
-
-def listing_lines(data: xr.Dataset, of: str, names: str, form: str = ".6g") -> Iterator[str]:
-    """Yield the table of what a result lists along a dimension, of variables that begin so."""
-    if data.sizes.get(of):
-        yield f"{of.replace('_', ' ')}s"
-        yield from table_lines(columns_of(data, names, f"{of}_", form))
-    else:
-        yield f"no {of.replace('_', ' ')} in this range"
-
-
-def stacked_columns_of(data: xr.Dataset, names: str) -> Columns:
-    """Return columns of variables, a row for each value of all dimensions of the first one."""
-    dims = [*map(str, data[re.split("[ +:]", names)[0]].dims)]
-    rows = data.stack(row=dims, create_index=False) if dims else data.expand_dims("row")
-    return columns_of(rows.transpose("row", ...), " ".join([*dims, names]))
-
-
-def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g") -> Columns:
-    """Return columns of variables along one dimension, in display units.
-
-    A name may have an error and a format of its own: ``"kind jumps+standard_error:.5f"``.
-    """
-    columns: Columns = {}
-    for name, error, own in COLUMN.findall(names):
-        array, form_of_it = data[prefix + name], own or form
-        values = array.values
-        if name in PARAMETERS and not error:
-            parts = [parameter_parts(data, name, float(one), form_of_it) for one in values]
-            before, _, unit = parts[0] if parts else (name, "", "")
-            title = f"{before or ('frequency' if name == 'eta' else name)} {unit}".rstrip()
-            columns[title] = [number for _, number, _ in parts]
-            continue
-        factor, word = units.display_scale_and_label(data, str(array.attrs.get("units", "1")))
-        title = f"{name} {word.replace('SI', '')}".rstrip()
-        if "flag_meanings" in array.attrs:
-            words = flag_words(array.attrs)
-            columns[title] = [words[int(value)] for value in values]
-        elif array.ndim > 1:
-            columns[title] = [", ".join(format(x, form_of_it) for x in row) for row in values]
-        elif error:
-            columns[title] = format_with_errors(
-                values / factor, data[error].values / factor, form_of_it
-            )
-        elif array.dtype.kind == "f":
-            texts = [format(value / factor, form_of_it) for value in values]
-            columns[title] = [text.replace("nan", "") for text in texts]
-        else:
-            columns[title] = [str(value) for value in values]
-    return columns
 
 
 def impact_lines(data: xr.Dataset) -> Iterator[str]:
@@ -196,6 +124,78 @@ def impact_lines(data: xr.Dataset) -> Iterator[str]:
     yield f"{count} impacts, the fastest at {speed} ({hardest}); {sticks} begin permanent contact"
 
 
+# -- tables ---------------------------------------------------------------------------------------
+
+
+def table_lines(
+    data: xr.Dataset, names: str, form: str = ".6g", prefix: str = "", most: int | None = None
+) -> Iterator[str]:
+    """Yield the table of some variables: a row for each value of all dimensions of the first one.
+
+    The coordinates of these dimensions come first. Numbers are in display units; a variable may
+    have an error and a format of its own: ``"jumps+standard_error:.5f, decided"``.
+    """
+    columns = COLUMN.findall(names)
+    dims = [*map(str, data[prefix + columns[0][0]].dims)]
+    columns = [*((dim, "", "") for dim in dims if dim in data.coords), *columns]
+    rows = data.stack(line=dims, create_index=False) if dims else data.expand_dims("line")
+    rows = rows.transpose("line", ...)
+    cells: dict[str, list[str]] = {}
+    for name, error, own in columns:
+        title, texts = column_of(rows, name, prefix, error, own or form)
+        cells.setdefault(title, texts)
+    yield from text_table_lines(cells, most)
+
+
+def listing_lines(data: xr.Dataset, of: str, names: str) -> Iterator[str]:
+    """Yield the table of what a result lists along a dimension, of variables that begin so."""
+    if data.sizes.get(of):
+        yield f"{of.replace('_', ' ')}s"
+        yield from table_lines(data, names, prefix=f"{of}_")
+    else:
+        yield f"no {of.replace('_', ' ')} in this range"
+
+
+def text_table_lines(columns: Mapping[str, list[str]], most: int | None = None) -> Iterator[str]:
+    rows = list(zip(*columns.values(), strict=True))
+    shown = [tuple(columns), *rows[:most]]
+    widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
+    for row in shown:
+        cells = (f"{cell:{width}}" for cell, width in zip(row, widths, strict=True))
+        yield f"  {'  '.join(cells)}".rstrip()
+    if more := len(rows) + 1 - len(shown):
+        yield f"  ... and {more} more"
+
+
+def column_of(
+    rows: xr.Dataset, name: str, prefix: str, error: str, form: str
+) -> tuple[str, list[str]]:
+    """Return title and cells of a variable with a value, or several, for each row."""
+    array = rows[prefix + name]
+    values = array.values
+    if name == "xi_rel_max":
+        return "largest gap", [format_largest_gap(rows.isel(line=i)) for i in range(len(values))]
+    if name in PARAMETERS and not error:
+        parts = [parameter_parts(rows, name, float(one), form) for one in values]
+        before, _, unit = parts[0] if parts else (name, "", "")
+        title = before or ("frequency" if name == "eta" else name)
+        return f"{title} {unit}".rstrip(), [number for _, number, _ in parts]
+    factor, word = units.display_scale_and_label(rows, str(array.attrs.get("units", "1")))
+    if "flag_meanings" in array.attrs:
+        words = flag_words(array.attrs)
+        texts = [words[int(value)] for value in values]
+    elif array.ndim > 1:
+        texts = [", ".join(format(number, form) for number in row) for row in values]
+    elif error:
+        pairs = zip(values / factor, rows[error].values / factor, strict=True)
+        texts = [format_with_error(*pair, form) for pair in pairs]
+    elif array.dtype.kind == "f":
+        texts = [format(value / factor, form).replace("nan", "") for value in values]
+    else:
+        texts = [str(value) for value in values]
+    return f"{name} {word.replace('SI', '')}".rstrip(), texts
+
+
 # -- parameters and ranges ------------------------------------------------------------------------
 
 
@@ -207,26 +207,25 @@ def format_time(data: xr.Dataset, time: float, form: str = ".4g") -> str:
 
 
 def varied_parameter_name(data: xr.Dataset) -> str:
-    others = {"direction", "structure", "attractor"}
-    (name,) = {str(dim) for dim in data.impacts_per_period.dims} - others
+    (name,) = {str(dim) for dim in data.impacts_per_period.dims} - {*SIDES, "attractor"}
     return name
 
 
-def format_parameter(data: xr.Dataset, name: str, value: Any, form: str = ".6g") -> str:
-    """Format a parameter's value in display units: ``12.5 Hz``, ``e = 0.7``."""
-    return format_range(data, name, value, value, form)
+def format_parameter(data: xr.Dataset, name: str, *values: Any, form: str = ".6g") -> str:
+    """Format a parameter's value, or both ends of a range, in display units.
 
-
-def format_range(data: xr.Dataset, name: str, low: Any, high: Any, form: str = ".6g") -> str:
-    """Format a range of a parameter in display units: ``12.5 to 13 Hz``, ``e = 0.7 to 0.8``."""
-    before, first, unit = parameter_parts(data, name, float(low), form)
-    last = parameter_parts(data, name, float(high), form)[1]
-    numbers = first if first == last else f"{first} to {last}"
-    return f"{before} = {numbers} {unit}".rstrip() if before else f"{numbers} {unit}"
+    ``12.5 Hz``, ``e = 0.7``, ``12.5 to 13 Hz``, ``e = 0.7 to 0.8``; words as they are.
+    """
+    if isinstance(values[0], str):
+        return values[0]
+    parts = [parameter_parts(data, name, float(value), form) for value in values]
+    before, _, unit = parts[0]
+    numbers = " to ".join(dict.fromkeys(number for _, number, _ in parts))
+    return f"{f'{before} = ' if before else ''}{numbers} {unit}".rstrip()
 
 
 def format_full_range(data: xr.Dataset, name: str) -> str:
-    return format_range(data, name, data[name].min(), data[name].max())
+    return format_parameter(data, name, data[name].min(), data[name].max())
 
 
 def parameter_parts(
@@ -270,27 +269,14 @@ def format_ranges(data: xr.Dataset, name: str, flags: Any, max_ranges: int = 8) 
     return f"{words} {unit}".rstrip() + (f" and {left} shorter ranges" if left else "")
 
 
-def format_share(count: int, whole: int, word: str = "") -> str:
-    number = f"{count:,} {word}".rstrip()
-    return f"{number} ({100.0 * count / whole:.0f} %)"
-
-
-def format_largest_gap(data: xr.Dataset, form: str = ".6g") -> str:
+def format_largest_gap(data: xr.Dataset) -> str:
     """Format a response's largest gap over a eta^2, as length too if the box's motion is known."""
     ratio, length = float(data.xi_rel_max), units.unit_of_xi(data)
-    parts = [f"xi_Rel = {ratio:{form}}"]
-    if (
-        length is not None
-        and math.isfinite(float(length))
-        and not units.shows_lengths_as_ratios(data)
-    ):
-        parts.append(units.format_quantity(data, ratio * float(length), "m", ".4g"))
-    return ", ".join(parts)
+    known = length is not None and math.isfinite(float(length))
+    if not known or units.shows_lengths_as_ratios(data):
+        return f"xi_Rel = {ratio:.6g}"
+    return f"xi_Rel = {ratio:.6g}, {units.format_quantity(data, ratio * float(length), 'm', '.4g')}"
 
 
-def format_with_errors(
-    values: Any, errors: Any, form: str = ".5g", error_form: str = ".2g"
-) -> list[str]:
-    """Return numbers with their errors as texts, ``none`` where there is no number."""
-    pairs = zip(np.ravel(values).tolist(), np.ravel(errors).tolist(), strict=True)
-    return [f"{x:{form}} +- {s:{error_form}}" if math.isfinite(x) else "none" for x, s in pairs]
+def format_with_error(value: float, error: float, form: str = ".5g") -> str:
+    return f"{value:{form}} +- {error:.2g}" if math.isfinite(value) else "none"

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any, Literal
 
 from ..errors import InputError
+from ..flags import flag_word
 from ..lazy import xr
 from ..model import Drive, Structure
 from ..units import format_quantity
@@ -29,19 +30,17 @@ class Simulate(OfStructure, OfBox, Beside, FunctionCommand, Stored, Results):
   {program} simulate --eta 1.2 --start 0,0.5,0,0                from a gap of 0.5 m"""
 
 
-def largest_response_columns(data: xr.Dataset) -> printing.Columns:
-    """Return the largest response at each level, bonded and delaminated, and where it opens."""
+def largest_response_lines(data: xr.Dataset) -> Iterator[str]:
+    """Yield the largest response at each level, bonded and delaminated, and where it opens."""
     data = data.transpose("level", "structure", ...)
     others = [dim for dim in data.x1_max.dims if dim not in ("level", "structure")]
     gap = data.x_rel_max.max(others, keep_attrs=True)
-    top = data.isel(data.x1_max.argmax(others)).assign(gap=gap)
-    columns = printing.stacked_columns_of(top, "x1_max:.4g frequency:.4g gap:.4g")
+    top, names = data.isel(data.x1_max.argmax(others)).assign(gap=gap), "x1_max, frequency, gap"
     if data.attrs["clearance"] < 0.0:
         opens = (data.x_rel_max > 0.0).any({*others} - {"frequency"})
-        rows = opens.stack(row=("level", "structure"), create_index=False).transpose("row", ...)
-        texts = [printing.format_ranges(data, "frequency", row.values, 2) for row in rows]
-        columns["opens at"] = texts
-    return columns
+        texts = [[printing.format_ranges(data, "frequency", x, 2) for x in y] for y in opens.values]
+        top, names = top.assign({"opens at": (opens.dims[:2], texts)}), f"{names}, opens at"
+    yield from printing.table_lines(top, names, ".4g")
 
 
 class Resonance(OfStructure, OfBox, Overlay, FunctionCommand, Stored, Results):
@@ -67,22 +66,22 @@ class Resonance(OfStructure, OfBox, Overlay, FunctionCommand, Stored, Results):
 
     def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         if "level" in data.dims:
-            yield from printing.table_lines(largest_response_columns(data))
+            yield from largest_response_lines(data)
         else:
             if not data.sizes["peak"]:
                 for part in (data.sel(structure=one) for one in data.structure):
                     yield f"{part.structure.item()}:"
                     yield from printing.describe(part, "x1_max x2_max a1_max a2_max x_rel_max")
-            of = f"structure direction {printing.varied_parameter_name(data)}"
-            largest = "x1_max:.4g x2_max:.4g a1_max:.4g a2_max:.4g x_rel_max:.4g irregular"
-            yield from printing.listing_lines(data, "peak", f"{of} {largest}")
-            yield from printing.listing_lines(data, "jump", f"{of} before:.4g after:.4g")
+            of = f"structure, direction, {printing.varied_parameter_name(data)}"
+            largest = "x1_max:.4g, x2_max:.4g, a1_max:.4g, a2_max:.4g, x_rel_max:.4g, irregular"
+            yield from printing.listing_lines(data, "peak", f"{of}, {largest}")
+            yield from printing.listing_lines(data, "jump", f"{of}, before:.4g, after:.4g")
             if data.sizes["jump"]:
                 yield "before, after: the largest gap on both sides of the jump"
         if "lowest_threshold" in data:
             level, at = data.lowest_threshold, data.lowest_threshold_frequency
-            where = printing.format_parameter(data, "frequency", at, ".4g")
-            text = printing.format_parameter(data, "level", level, ".3g")
+            where = printing.format_parameter(data, "frequency", at, form=".4g")
+            text = printing.format_parameter(data, "level", level, form=".3g")
             yield f"in this range it first {level.attrs['event']} at {where}: {text}"
         if data.attrs.get("clearance", 0.0) < 0.0:
             at_rest = Structure.from_attributes(data.attrs).as_delaminated().at_rest
@@ -136,23 +135,28 @@ class Spectra(OfBox, DriveCommand, Stored, OfBoth):
         part = (above / largest).assign_attrs(units="1")
         shown = data.assign(largest=largest.assign_attrs(lines.attrs), part=part)
         yield "the largest line, and what part of it the largest above the excitation's is"
-        speed = "speed:.5g " * ("speed" in data)
-        yield from printing.table_lines(
-            printing.stacked_columns_of(shown, f"{speed}largest:.4g part:.2g")
-        )
+        speed = "speed:.5g, " * ("speed" in data)
+        yield from printing.table_lines(shown, f"{speed}largest:.4g, part:.2g")
 
 
 PAPER_RANGE = "0.1:8.0:0.001"  # frequency ratios of Figure 6
+FEW = 4  # responses that have a row each, such as at one value up and down
 DIFFERENT = 0.01  # of the largest gap: where up and down differ by more, they are different motions
 
 
 def response_lines(data: xr.Dataset) -> Iterator[str]:
-    sizes = "xi_rel_max x1_max x2_max a1_max a2_max impacts_per_period"
-    yield from printing.describe(data, f"{sizes} multiplicity_decided permanent_contact")
-    if data.multiplicity.size <= 4:  # such as one value up and down
-        names = "xi_rel_max:.4g impacts_per_period:.4g multiplicity multiplicity_decided"
-        yield from printing.table_lines(printing.stacked_columns_of(data, names))
-    repeated = printing.flag_mask(data.multiplicity_decided, "repeated")
+    """Yield the sizes of responses, and their periods: of few in a table, of many in numbers."""
+    sizes, decided = "x1_max x2_max a1_max a2_max", data.multiplicity_decided
+    if data.multiplicity.size <= FEW:
+        yield from printing.describe(data, f"{sizes} permanent_contact")
+        names = "xi_rel_max, impacts_per_period:.4g, multiplicity, multiplicity_decided"
+        yield from printing.table_lines(data, names)
+        words = dict.fromkeys(map(flag_word, decided.stack(row=decided.dims)))
+        yield from printing.hint_lines(f"multiplicity_decided: {word}" for word in words)
+        return
+    counted = "impacts_per_period multiplicity_decided permanent_contact"
+    yield from printing.describe(data, f"xi_rel_max {sizes} {counted}")
+    repeated = printing.flag_mask(decided, "repeated")
     yield from printing.count_lines(data, data.multiplicity.where(repeated))
 
 

@@ -129,8 +129,8 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         volts = self.job.drive.volts(self.job.structure)
         half = 0.5 * abs(data.jump_high - data.jump_low)
         shown = data.assign(half=half, eta0=(data.jumps / volts).assign_attrs(units="1"))
-        names = "jumps+half:.5f eta0:.5f ramp_voltage:.4f decided no_jump"
-        yield from printing.table_lines(printing.stacked_columns_of(shown, names))
+        names = "jumps+half:.5f, eta0:.5f, ramp_voltage:.4f, decided, no_jump"
+        yield from printing.table_lines(shown, names)
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         return draw_couple(self.picture_title(results), results, self.job, self.stationary)
@@ -169,9 +169,8 @@ The motor is switched on at once and followed until its speed has settled."""
 
     def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         half = 0.5 * (data.border_high - data.border_low)
-        columns = printing.stacked_columns_of(data.assign(half=half), "border+half:.5f above_fold")
-        yield from printing.table_lines(columns)
-        yield from printing.hint_lines([f"above_fold: {one}" for one in {*columns["above_fold"]}])
+        yield from printing.table_lines(data.assign(half=half), "border+half:.5f, above_fold")
+        yield from printing.hint_lines(["above_fold: yes"] * bool(data.above_fold.any()))
         yield from printing.describe(data, "passes decision")
 
 
@@ -246,8 +245,7 @@ class JumpVoltages(OfRamp, Over, Stepped, DriveCommand, Stored, OfBoth):
     def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         # a direction in which no ramp went has not been decided
         went = [jump for jump in data.jump.values if data.decided.sel(jump=jump).any()]
-        rows = printing.stacked_columns_of(data.sel(jump=went), "jumps+standard_error:.5f decided")
-        yield from printing.table_lines(rows)
+        yield from printing.table_lines(data.sel(jump=went), "jumps+standard_error:.5f, decided")
         if (data.decided == "undecided").any():
             yield "undecided by constant voltages; drive-branch shows which motions are stable"
 
@@ -265,7 +263,7 @@ def format_unlocated_changes(leg: xr.Dataset, located: Any) -> str:
 
 def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
     rows = data.sortby(["bifurcation_structure", "bifurcation_voltage"])
-    yield from printing.listing_lines(rows, "bifurcation", "structure kind voltage speed")
+    yield from printing.listing_lines(rows, "bifurcation", "structure, kind, voltage, speed")
     if rows.sizes["bifurcation"]:
         yield "at which of them a motor that follows its voltage jumps: jump-voltages, or couple"
     legs = [data.sel(structure=name, leg=leg) for name in data.structure for leg in data.leg]
@@ -283,7 +281,7 @@ def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
     unlocated = [format_unlocated_changes(leg, data.bifurcation_speed.values) for leg in legs]
     if any(unlocated):
         columns["stability changes near, not located (--period)"] = unlocated
-    yield from printing.table_lines(columns)
+    yield from printing.text_table_lines(columns)
     yield from printing.hint_lines(dict.fromkeys(columns["ends by"]))
 
 
@@ -336,7 +334,7 @@ def drive_variable_lines(drive: Path) -> Iterator[str]:
         "unit": [one.unit or "no unit" for _, one in listed],
         "description": [one.description or "" for _, one in listed],
     }
-    yield from printing.table_lines(columns)
+    yield from printing.text_table_lines(columns)
     if likely := propose_connections(description):
         links = " ".join(f"{ours}={theirs}" for ours, theirs in likely.items())
         yield f"likely: --connect {links}   (a run checks the sign of the force)"

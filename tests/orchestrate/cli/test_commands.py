@@ -59,7 +59,7 @@ ASKED = {  # command: options, a unit and what is printed in it, what is printed
     ),
     "map": (
         (*BEAM, "--hz", "12,13", "--g", "0.02", "--over", "e", "--values", "0.3,0.7", *SHORT),
-        *("rpm", r"7[28]0 rpm", ("multiplicity 1: ", "largest gap"), {"samples": 4}),
+        *("rpm", r"7[28]0 rpm", ("repeated", "largest gap"), {"samples": 4}),
     ),
     "lyapunov": (
         ("--eta", "0.8,1.047", "--transient", "100", "--periods", "300"),
