@@ -23,7 +23,8 @@ from .printing import describe, impact_lines
 
 UNIT_OF_OPTION = {name: ALIKE.get(unit, unit) for name, unit in {**UNITS, "eta": "eta"}.items()}
 VARIED = ("eta", "frequency", "level", "values")
-Runs = Mapping[str, "xr.Dataset"]  # by structure, or by "" where there is one
+# by structure, or by "" where there is one
+States, Files, Runs = Mapping[str, Any], Mapping[str, ResultFiles], Mapping[str, "xr.Dataset"]
 
 
 class Overlay(Options):
@@ -78,38 +79,27 @@ class FunctionCommand(Command):
         if not (getattr(self, "beside", False) or hasattr(self, "only")):
             return {"": structure}
         both = {"bonded": structure.as_bonded(), "delaminated": structure.as_delaminated()}
-        only = getattr(self, "only", None)
+        if only := getattr(self, "only", None):
+            return {only: both[only]}
         for name in ("store", "start"):
-            if not only and getattr(self, name, None) is not None:
+            if getattr(self, name, None) is not None:
                 text = "computes two structures; expected it without"
                 raise InputError(f"--beside: {text} {option_names([name])}")
-        return {only: both[only]} if only else both
+        return both
 
-    def compute(
-        self,
-        states: Mapping[str, Any],
-        others: Any,
-        question: Keywords,
-        files: Mapping[str, ResultFiles],
-    ) -> dict[str, xr.Dataset]:
+    def compute(self, states: States, others: Any, question: Keywords, files: Files) -> Runs:
         function: Callable[..., xr.Dataset] = getattr(orchestrate, self.calls)
-        return {
-            state: function(
-                structure,
-                *others,
-                **question,
-                **self.running_keywords(files[state].result if self.stores else None),
-            )
-            for state, structure in states.items()
-        }
+        results = {}
+        for state, structure in states.items():
+            running = self.running_keywords(files[state].result if self.stores else None)
+            results[state] = function(structure, *others, **question, **running)
+        return results
 
     def __call__(self) -> None:
         structure, *others, question = self.read_question()
         self.compute_print_and_write(structure, *others, question)
 
-    def compute_print_and_write(
-        self, structure: Any, *rest: Any, picture: bool = True
-    ) -> dict[str, xr.Dataset]:
+    def compute_print_and_write(self, structure: Any, *rest: Any, picture: bool = True) -> Runs:
         """Compute results, print their summary, write files; return them."""
         *others, question = rest
         states = self.structures_by_state(structure)
@@ -121,7 +111,6 @@ class FunctionCommand(Command):
         for state in states:
             word = re.sub(r"[^\w]", "-", f"_{state}" if state else "")
             files[state] = ResultFiles.from_options(self, f"{name}{word}", over, fresh)
-        picture = picture and self.has_picture(question)
         common = next(iter(files.values()))
         if len(files) > 1:
             fresh = any(one.fresh for one in files.values())
@@ -140,7 +129,7 @@ class FunctionCommand(Command):
             if not self.stores:
                 write_unstored_netcdf(files[state], results[state])
             files[state].write_and_print_paths(data)
-        if picture:
+        if picture and self.has_picture(question):
             common.write_pictures(partial(self.draw, shown, question, *branches))
         self.write_further_files(common, question, shown, results)
         return results
@@ -178,16 +167,14 @@ class FunctionCommand(Command):
     def display_units(self, question: Keywords) -> Units:
         """Return the display units: those of ``--units``, else those of the question's options."""
         varied = str(getattr(self, "over", "")).replace(" ", "").split(",")  # two of a border
-        given = [UNIT_OF_OPTION[name] for name in varied if name in UNIT_OF_OPTION]
-        given += [unit for name, unit in UNIT_OF_OPTION.items() if getattr(self, name, None)]
+        names = [*varied, *(name for name in UNIT_OF_OPTION if getattr(self, name, None))]
+        given = [UNIT_OF_OPTION[name] for name in names if name in UNIT_OF_OPTION]
         keys = self.toml_section("excitation") if "frequency" in question and not given else ()
         words = [key.removeprefix("frequency_") for key in keys]
         given += [ALIKE.get(word, word) for word in words if word in (*UNITS.values(), "eta")]
-        both = question.get("over") or ()  # of a border
-        by_ratio = "eta" in question or (not isinstance(both, str) and "eta" in both)
         in_g = getattr(self, "g", None) is not None or "acceleration_g" in keys
-        usual = Units((*given, "eta" if by_ratio else "Hz")[0], acceleration="g" if in_g else "")
-        return self.read_units().with_defaults(usual)
+        frequency = (*given, "eta" if "eta" in question else "Hz")[0]
+        return self.read_units().with_defaults(Units(frequency, acceleration="g" if in_g else ""))
 
 
 def has_several_values(question: Mapping[str, Any]) -> bool:

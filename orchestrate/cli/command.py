@@ -12,7 +12,7 @@ import inspect
 import re
 import typing
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -31,12 +31,12 @@ LINK = re.compile(r"As (?:in|for) :\w+:`orchestrate\.(\w+)`")
 MARKUP = re.compile(r":\w+:`(?:orchestrate\.)?([^`]*)`|``([^`]*)``")
 MAPPING = re.compile(r'\{"(\w+)": "?([^"}]*)"?\}')  # on the command line NAME=VALUE
 DOCUMENTED: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts are read, and named
-    "array_like or xarray.Dataset": (grammar.State, "X1,X2,V1,V2|FILE.nc"),
-    "array_like of 4 floats, or mapping": (grammar.State, "X1,X2,V1,V2|FILE.nc"),
-    "array_like of 4 floats": (Annotated[Any, grammar.parse_state], "X1,X2,V1,V2"),
-    "(str, float, float, int)": (grammar.PlaneSide, "NAME,FIRST,LAST,COUNT"),
-    "(float, float)": (grammar.Ends, "FIRST:LAST"),
-    "int or sequence of float": (grammar.Orders, "N|A,B,..."),
+    "array_like or xarray.Dataset": (grammar.parse_state_or_file, "X1,X2,V1,V2|FILE.nc"),
+    "array_like of 4 floats, or mapping": (grammar.parse_state_or_file, "X1,X2,V1,V2|FILE.nc"),
+    "array_like of 4 floats": (grammar.parse_state, "X1,X2,V1,V2"),
+    "(str, float, float, int)": (grammar.parse_plane_side, "NAME,FIRST,LAST,COUNT"),
+    "(float, float)": (grammar.parse_ends, "FIRST:LAST"),
+    "int or sequence of float": (grammar.parse_orders, "N|A,B,..."),
     "int": (int, "N"),
     "float or mapping": (str, "X|CHANNEL=X,..."),
     "float": (float, "X"),
@@ -48,16 +48,18 @@ DOCUMENTED: dict[str, tuple[Any, str]] = {  # types of docstrings: how texts are
     "array_like": (float, "X"),
 }
 RUNNING = "Running"  # in place of a function: the keywords of all on how to compute
-NEEDED = " (needed)"
+NEEDED, NONE = " (needed)", inspect.Parameter.empty
 MEANT = {  # for options of ours
     **{"--gravity": "--box-acceleration -1g", "--level": "--g", "--g-rms": "--g", "--rms": "--g"},
     **{"--freq": "--hz", "--force": "--force1", "--csv": "--format csv", "--out": "--output"},
     **{"--levels": "--g", "--guess": "--structure", "--time": "--periods", "--beam": "--structure"},
     **{"--duration": "--periods", "--sine": "--swept-sine", "--sweep": "--swept-sine"},
 }
-OF_BOX = ("eta", "frequency", "amplitude", "level")
-READERS: dict[Any, Callable[[str, str], Any]] = {int: grammar.read_int, float: grammar.parse_number}
-STRUCTURE_NAMES = (*STRUCTURE, *RATIO_QUANTITIES, *grammar.SET_NAMES)
+READERS: dict[Any, tuple[Callable[[str, str], Any] | None, str]] = {  # and what values are called
+    int: (grammar.read_int, "N"),
+    float: (grammar.parse_number, "X"),
+    Path: (None, "FILE"),
+}
 Keywords = dict[str, Any]
 
 
@@ -65,29 +67,23 @@ Keywords = dict[str, Any]
 class Option:
     """One option of a command; its type is the annotation of the attribute."""
 
-    help: str
+    help: str  # with its default
     default: Any = None
     value: str = ""  # what the help calls it, where its type does not tell
-    name: str = ""  # where it is not the attribute's
-    also: str = ""  # a name of before
+    names: tuple[str, ...] = ()  # flags, where they are not the attribute's name
     position: bool = False  # no flag: the value stands by itself
     needed: bool = False
     many: bool = False  # several values after one flag
-    usual: Any = None  # what is taken where it is not given, where that is not the default
+    read: Callable[[str, str], Any] | None = None  # from flag and text, where not by the type
+    # known in the command's class: the annotation, and in whose help it stands
+    kind: Any = None
+    group: Any = None
 
-    @property
-    def help_with_default(self) -> str:
-        """The help, with the default where it does not say so."""
-        usual = self.default if self.usual is None else self.usual
-        said = usual in (None, False, (), "") or "default" in self.help
-        return self.help if said else f"{self.help} (default: {usual})"
-
-    def to_parameter(self, attribute: str, kind: Any, group: cyclopts.Group) -> inspect.Parameter:
-        read, called = reader_and_metavar(kind)
-        flag = self.name or option_names([attribute])
+    def to_parameter(self, attribute: str, group: cyclopts.Group) -> inspect.Parameter:
+        read, called = (self.read, "X") if self.read else reader_and_metavar(self.kind)
         details = cyclopts.Parameter(
-            name=None if self.position else (flag, self.also) if self.also else flag,
-            help=self.help_with_default,
+            name=None if self.position else self.names,
+            help=self.help,
             metavar=self.value or called,
             group=group,
             negative=(),
@@ -96,20 +92,25 @@ class Option:
             required=self.needed,
             consume_multiple=self.many or None,
             allow_repeating=True,  # the last one counts
-            converter=cyclopts_converter(read) if read else None,
+            converter=read and (lambda _, texts: read(texts[-1].keyword or "", texts[-1].value)),
             n_tokens=1 if read else None,
         )
         return inspect.Parameter(
             attribute,
             inspect.Parameter.POSITIONAL_ONLY if self.position else inspect.Parameter.KEYWORD_ONLY,
-            default=inspect.Parameter.empty if self.needed else self.default,
-            annotation=Annotated[kind, details],
+            default=NONE if self.needed else self.default,
+            annotation=Annotated[Any if self.read else self.kind, details],
         )
 
 
 def option(help: str, default: Any = None, value: str = "", **details: Any) -> Any:
     """Return an option, as ``Any``: as an attribute it has the value's type."""
-    return Option(help, default, value, **details)
+    return Option(help_with_default(help, default), default, value, **details)
+
+
+def help_with_default(help: str, usual: Any) -> str:
+    said = usual in (None, False, (), "") or "default" in help
+    return help if said else f"{help} (default: {usual})"
 
 
 def option_names(names: Iterable[str], joint: str = ", ") -> str:
@@ -118,22 +119,14 @@ def option_names(names: Iterable[str], joint: str = ", ") -> str:
 
 
 def reader_and_metavar(kind: Any) -> tuple[Callable[[str, str], Any] | None, str]:
-    known, parts = {int: "N", float: "X", Path: "FILE"}, (kind, *typing.get_args(kind))
-    called = next((known[one] for one in parts if one in known), "TEXT")
-    for one in parts:
-        if typing.get_origin(one) is Annotated:
-            return next(read for read in typing.get_args(one) if inspect.isfunction(read)), "X"
-        if typing.get_origin(one) is Literal:
-            choices = typing.get_args(one)
-            read = functools.partial(grammar.parse_choice, choices)
-            return read, "{" + ",".join(map(str, choices)) + "}"
-        if one in READERS:
-            return READERS[one], called
-    return None, called
-
-
-def cyclopts_converter(read: Callable[[str, str], Any]) -> Callable[..., Any]:
-    return lambda _, tokens: read(tokens[-1].keyword or "", tokens[-1].value)
+    for part in (kind, *typing.get_args(kind)):
+        origin, arguments = typing.get_origin(part), typing.get_args(part)
+        if origin is Literal:
+            choices = "{" + ",".join(map(str, arguments)) + "}"
+            return functools.partial(grammar.parse_choice, arguments), choices
+        if part in READERS:
+            return READERS[part]
+    return None, "TEXT"
 
 
 class Options:
@@ -182,7 +175,7 @@ class Command(Options, ABC):
 
     def __init__(self, **values: Any) -> None:
         self.command_line = ""
-        for name, (one, _, _) in self.options().items():
+        for name, one in self.options().items():
             default = list(one.default) if isinstance(one.default, tuple) else one.default
             setattr(self, name, values.get(name, default))
 
@@ -192,35 +185,35 @@ class Command(Options, ABC):
 
     @classmethod
     @functools.cache
-    def options(cls) -> dict[str, tuple[Option, Any, type[Options]]]:
-        """Return each option, its type and the group that it stands in, by the attribute."""
+    def options(cls) -> dict[str, Option]:
         hints = typing.get_type_hints(cls, include_extras=True)
-        found: dict[str, tuple[Option, Any, type[Options]]] = {}
+        found: dict[str, Option] = {}
         for group in reversed(cls.__mro__):
             own = vars(group)
-            for name, one in own.items():
-                if isinstance(one, Option):
-                    one = replace(one, default=False) if hints[name] is bool else one
-                    found[name] = one, hints[name], found[name][2] if name in found else group
+            written = [name for name, one in own.items() if isinstance(one, Option)]
+            new = {name: replace(own[name], kind=hints[name]) for name in written}
             takes = own.get("takes", "*" if own.get("calls") else "")
-            others = [name for name in readable_arguments(cls.calls) if name not in found]
-            taken = takes.replace("*", " ".join(others)), cls.calls, own.get("if_given")
-            found |= {
-                name: (one, kind, group) for name, one, kind in options_from_functions(*taken)
-            }
-        return dict(sorted(found.items(), key=lambda row: vars(row[1][2]).get("rank", 2)))
+            if "*" in takes:
+                known = found.keys() | new.keys()
+                every = [name for name in readable_arguments(cls.calls) if name not in known]
+                takes = takes.replace("*", " ".join(every))
+            new |= options_from_functions(takes, cls.calls, own.get("if_given"))
+            for name, one in new.items():
+                first = found[name].group if name in found and name in written else group
+                names = one.names or (option_names([name]),)
+                found[name] = replace(one, names=names, group=first)
+        return dict(sorted(found.items(), key=lambda row: vars(row[1].group).get("rank", 2)))
 
     @classmethod
     def flags(cls) -> list[str]:
-        rows = cls.options().items()
-        return [one.name or option_names([name]) for name, (one, _, _) in rows if not one.position]
+        return [one.names[0] for one in cls.options().values() if not one.position]
 
     @classmethod
     def name(cls) -> str:
         return cyclopts.default_name_transform(cls.__name__)
 
     def given_options(self, *groups: type[Options]) -> Keywords:
-        names = [name for name, (_, _, of) in self.options().items() if of in groups]
+        names = [name for name, one in self.options().items() if one.group in groups]
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
     def require(self, name: str, expected: str) -> Any:
@@ -229,14 +222,14 @@ class Command(Options, ABC):
         return value
 
     def function_keywords(self) -> Keywords:
-        arguments = required_by_argument(self.calls)
+        defaults = default_by_argument(self.calls)
         found: Keywords = {}
-        for name, (one, kind, of) in self.options().items():
-            if of is type(self) and name in arguments:
+        for name, one in self.options().items():
+            if one.group is type(self) and name in defaults:
                 found[name] = getattr(self, name)
-                if arguments[name]:
+                if defaults[name] is NONE:
                     self.require(name, f" ({one.help.removesuffix(NEEDED)})")
-                if kind is grammar.State and isinstance(found[name], Path):
+                if one.read is grammar.parse_state_or_file and isinstance(found[name], Path):
                     found[name] = grammar.load_earlier_result(option_names([name]), found[name])
         return found
 
@@ -244,10 +237,10 @@ class Command(Options, ABC):
     def cyclopts_app(cls) -> cyclopts.App:
         groups: dict[str, cyclopts.Group] = {}
         parameters = []
-        for name, (one, kind, of) in cls.options().items():
-            heading, remark = (vars(of).get(key, "") for key in ("heading", "remark"))
+        for name, one in cls.options().items():
+            heading, remark = (vars(one.group).get(key, "") for key in ("heading", "remark"))
             group = cyclopts.Group(heading or "question", help=remark, sort_key=len(groups))
-            parameters.append(one.to_parameter(name, kind, groups.setdefault(heading, group)))
+            parameters.append(one.to_parameter(name, groups.setdefault(heading, group)))
         parameters.sort(key=lambda one: one.kind)
 
         def make_command(*positions: Any, **values: Any) -> Command:
@@ -262,10 +255,10 @@ class Command(Options, ABC):
 # -- options from a public function ----------------------------------------------------------------
 
 
-def required_by_argument(function: str) -> dict[str, bool]:
-    """Return of each argument of a public function or class whether it has no default."""
-    parameters = inspect.signature(getattr(orchestrate, function)).parameters.values()
-    return {one.name: one.default is inspect.Parameter.empty for one in parameters}
+def default_by_argument(function: str) -> dict[str, Any]:
+    """Return the default of each argument of a public function or class, ``NONE`` without."""
+    parameters = inspect.signature(getattr(orchestrate, function)).parameters
+    return {name: one.default for name, one in parameters.items()}
 
 
 @functools.cache
@@ -287,43 +280,38 @@ def types_and_meanings(function: str) -> dict[str, tuple[str, str]]:
 
 @functools.cache
 def readable_arguments(function: str) -> list[str]:
-    if not function:
-        return []
     typed = types_and_meanings(function)
-    arguments = inspect.signature(getattr(orchestrate, function)).parameters.values()
     return [
         one.name
-        for one in arguments
+        for one in inspect.signature(getattr(orchestrate, function)).parameters.values()
         if one.kind == one.KEYWORD_ONLY
-        and one.name not in (*OF_BOX, "over", "values")
+        and one.name not in ("eta", "frequency", "amplitude", "level", "over", "values")
         and one.default is not True
         and typed[one.name][0].startswith(("{", *DOCUMENTED))
         and typed[one.name][0].partition(",")[0] != "array_like"  # of one number, where named
     ]
 
 
-def options_from_functions(
-    takes: str, usual_function: str, if_given: bool | None
-) -> Iterator[tuple[str, Option, Any]]:
+def options_from_functions(takes: str, usual: str, if_given: bool | None) -> dict[str, Option]:
+    """Return options that are arguments of functions; types and help are those of docstrings."""
+    found = {}
     for part in filter(None, takes.split("; ")):
         function, _, names = part.rpartition(": ")
-        function = function or usual_function
-        of = None if function == RUNNING else inspect.signature(getattr(orchestrate, function))
+        function = function or usual
+        defaults = {} if function == RUNNING else default_by_argument(function)
         for name in names.split():
             typed, meaning = types_and_meanings(function)[name]
             known = (DOCUMENTED[one] for one in DOCUMENTED if typed.startswith(one))
-            kind, value = next(known, (None, ""))
-            if typed.startswith("{"):
-                kind = Literal[tuple(re.findall(r'"(\w+)"', typed))]
-            usual: Any = False if kind is bool else None
-            if of and name in of.parameters:
-                usual = of.parameters[name].default
-            words = help_text(meaning)
-            if usual is inspect.Parameter.empty:
-                usual, words = None, words if if_given else f"{words}{NEEDED}"
+            kind, value = next(known, (Literal[tuple(re.findall(r'"(\w+)"', typed))], ""))
+            default, words = defaults.get(name), help_text(meaning)
+            if default is NONE:
+                default, words = None, words if if_given else f"{words}{NEEDED}"
             if ";" in takes:
                 words = f"{cyclopts.default_name_transform(function)}: {words}"
-            yield name, Option(words, None if if_given else usual, value, usual=usual), kind
+            words = help_with_default(words, default)
+            one = Option(words, None if if_given else default, value, kind=kind)
+            found[name] = replace(one, read=kind) if inspect.isfunction(kind) else one
+    return found
 
 
 def help_text(meaning: str) -> str:
@@ -362,8 +350,11 @@ def explain_parse_error(error: exceptions.CycloptsError, command: type[Command])
 
 
 def suggest_option(flag: str, error: exceptions.UnknownOptionError, command: type[Command]) -> str:
-    name = flag.lstrip("-").replace("-", "_")
-    if name in STRUCTURE_NAMES and "--set" in command.flags():
+    name = grammar.quantity_of_option(flag)
+    if (
+        name in {**STRUCTURE, **RATIO_QUANTITIES, **grammar.SET_NAMES}
+        and "--set" in command.flags()
+    ):
         words = " ".join(error.root_input_tokens or []).replace(f"{flag}=", f"{flag} ").split(" ")
         value = "".join(words[words.index(flag) + 1 :][:1]) if flag in words else ""
         several = set(value) & set(":,") and "--over" in command.flags()

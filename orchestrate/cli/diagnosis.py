@@ -6,7 +6,7 @@ import logging
 from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import orchestrate
 
@@ -46,8 +46,7 @@ class Sweep(NamedTuple):
         return f"{self.path}{f', sweep {self.number}' if self.number else ''}"
 
 
-EXPECTED = "a factor for face 1, or for both faces, such as 1.57 or 0.53,0.6"
-Participation = Annotated[tuple[float, ...] | None, grammar.numbers_reader(EXPECTED, ",", (1, 2))]
+PARTICIPATION = "a factor for face 1, or for both faces, such as 1.57 or 0.53,0.6"
 
 
 class DiagnosedRecords(Options):
@@ -62,10 +61,11 @@ class DiagnosedRecords(Options):
         "all; may be repeated",
         (),
     )
-    participation: Participation = option(
+    participation: Any = option(
         "of the sensors on face 1 and face 2: the beam's mode there over that of a mass on a "
         "spring, 1.57 at the tip of a cantilever (default: fitted)",
         value="G,...",
+        read=grammar.numbers_reader(PARTICIPATION, ",", (1, 2)),
     )
 
 
@@ -220,19 +220,19 @@ what it gives:
                 yield f"  {label}: {grammar.with_option_names(verdict.attrs[name], self)}"
 
 
-PlanEnds = Annotated[Any, grammar.numbers_reader("FIRST:LAST in Hz, such as 30:60", "[:,]", (2,))]
-
-
 class Plan(OfStructure, OfSensors, FunctionCommand, output.Results):
     """Plan a test: rehearse it, and recommend the lowest level at which the verdict is right."""
 
     calls, named, stores = "plan_test", "plan", False
-    hz: PlanEnds = option(
+    hz: Any = option(
         "the sweep's ends in Hz (default: 0.65 to 1.4 times the bonded resonance)",
         value="FIRST:LAST",
+        read=grammar.numbers_reader("FIRST:LAST in Hz, such as 30:60", "[:,]", (2,)),
     )
-    g: grammar.Listed = option(
-        "levels, peak acceleration in g (default: nine from 0.01 to 1)", value="VALUES"
+    g: Any = option(
+        "levels, peak acceleration in g (default: nine from 0.01 to 1)",
+        value="VALUES",
+        read=grammar.parse_values,
     )
     faces: Literal["1", "2", "both"] | None = option("faces with a sensor (default: both)")
     examples = """

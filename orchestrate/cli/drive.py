@@ -18,7 +18,13 @@ from ..model.drive import motor_constant_and_resistance
 from ..units import Units
 from .answer import FunctionCommand, Runs
 from .command import Keywords, Options, option, option_names
-from .grammar import Positive, parse_changes, parse_ends, parse_number_or_ends, parse_single_rate
+from .grammar import (
+    parse_changes,
+    parse_ends,
+    parse_number_or_ends,
+    parse_positive_number,
+    parse_single_rate,
+)
 from .notes import warn_of_unusual_voltage
 from .options import Over, print_assumptions
 
@@ -54,13 +60,18 @@ class OfMotor(Options):
         (),
         "NAME=VALUE",
     )
-    rated_voltage: Positive = option(
+    rated_voltage: float | None = option(
         "of the motor, V: by its datasheet, all three in place of motor_constant and "
         "armature_resistance",
         value="V",
+        read=parse_positive_number,
     )
-    no_load_rpm: Positive = option("its speed without load", value="RPM")
-    stall_torque: Positive = option("its torque at rest, N m", value="N.M")
+    no_load_rpm: float | None = option(
+        "its speed without load", value="RPM", read=parse_positive_number
+    )
+    stall_torque: float | None = option(
+        "its torque at rest, N m", value="N.M", read=parse_positive_number
+    )
 
     def read_structure_and_drive(self) -> tuple[Structure, Drive]:
         drive = Drive.from_file(self.drive)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from functools import partial
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import orchestrate
 
@@ -16,19 +16,10 @@ from ..flags import flag_word
 from ..lazy import xr
 from ..model import PARAMETERS, Structure
 from ..model.ranges import PUSHES
-from . import printing
+from . import grammar, printing
 from .answer import FunctionCommand, Runs, has_several_values
 from .command import Keywords, option
-from .grammar import make_reader, parse_plain_int, parse_positive_number
-from .options import (
-    CONTINUED,
-    OfBox,
-    OfPushes,
-    OfStored,
-    OfStructure,
-    Over,
-    parse_continued_parameter,
-)
+from .options import CONTINUED, OfBox, OfPushes, OfStored, OfStructure, Over, parse_continued
 from .output import ResultFiles, Results, Stored, result_file_stem
 
 MOST_ROWS = 10  # of the exponents of a range
@@ -279,9 +270,8 @@ class Branch(OfStored, OfBox, FunctionCommand, Stored, Results):
 The excitation says where a first orbit is looked for; without it that is the lower limit."""
 
     def read_question(self) -> tuple[Structure, Keywords]:
-        over, limits = parse_continued_parameter(
-            self.over, self.require("limits", "; expected FIRST:LAST")
-        )
+        limits = self.require("limits", "; expected FIRST:LAST")
+        over, limits = parse_continued(self.over, limits)
         structure, keywords = self.read_structure_and_question()
         if over == "frequency" and self.g is not None:
             self.replace_level_by_amplitude(structure, limits[0])
@@ -302,7 +292,7 @@ The excitation says where a first orbit is looked for; without it that is the lo
         frequency = first
         if self.given_frequency_option() is not None:
             frequency = self.read_excitation(structure, one_frequency=True)["frequency"]
-        level = parse_positive_number("--g", self.g) * GRAVITY
+        level = grammar.parse_positive_number("--g", self.g) * GRAVITY
         amplitude = float(f"{level / frequency**2:.6g}")
         text = f"--g {self.g}: is --amplitude {amplitude:g} at {frequency / TURN:.5g} Hz"
         if structure.has_scale:
@@ -327,10 +317,9 @@ The excitation says where a first orbit is looked for; without it that is the lo
         return excitation
 
 
-parse_bifurcation = make_reader(
-    "a number, or all", lambda _, text: text if text == "all" else parse_plain_int(text)
-)
-Bifurcation = Annotated[int | str, parse_bifurcation]
+@grammar.reader("a number, or all")
+def parse_bifurcation(_: str, text: str) -> int | str:
+    return text if text == "all" else grammar.parse_plain_int(text)
 
 
 class Border(OfStored, OfPushes, FunctionCommand, Stored, Results):
@@ -341,7 +330,9 @@ class Border(OfStored, OfPushes, FunctionCommand, Stored, Results):
         f"what varies, that of the branch first, each {CONTINUED}", "eta,e", "NAME,NAME"
     )
     limits: Any = option("between which each is followed, in its own unit", value="A:B,C:D")
-    bifurcation: Bifurcation = option("its number, or all of them in one picture", 0, "N|all")
+    bifurcation: int | str = option(
+        "its number, or all of them in one picture", 0, "N|all", read=parse_bifurcation
+    )
     examples = """
   {program} border --start branch.nc --bifurcation 0 --over eta,e --limits 2.4:2.9,0.6:0.8
   {program} border --start beam.nc --over hz,e --limits 14:18,0.6:0.8
@@ -358,9 +349,7 @@ structure and excitation are those of that branch."""
         if len(ranges) != 2:
             text = f"expected A:B,C:D, a range for each of {self.over}"
             raise InputError(f"--limits {self.limits}: {text}")
-        over, limits = zip(
-            *map(parse_continued_parameter, names, map(str.strip, ranges)), strict=True
-        )
+        over, limits = zip(*map(parse_continued, names, map(str.strip, ranges)), strict=True)
         structure, question = self.read_structure_and_question()
         return structure, {**question, **self.given_pushes(), "over": over, "limits": limits}
 

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Collection, Iterable
 from decimal import Decimal
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Any, TypeVar
 
 from ..constants import GRAVITY
 from ..errors import InputError, StoreError
@@ -23,7 +23,6 @@ Parsed = TypeVar("Parsed")
 Reader = Callable[[str, str], Parsed]
 MAX_VALUES = 10_000_000
 RANGE = "expected FIRST:LAST:STEP with 0 < FIRST <= LAST and STEP > 0, or a list such as 0.4,1.047"
-STATE = "X1,X2,V1,V2, four numbers in m and m/s, or with units such as 20um and 3mm/s"
 BREAKPOINTS = "HZ:VALUE,HZ:VALUE,... such as 10:0.5,200:0.5"
 KEYWORD = re.compile(  # in messages of public functions, with a value or without
     r"(?<![\w-])(?P<name>[a-z_]\w*)=(?P<value>\"[^\"]*\"|'[^']*'|\{[^}]*\}|[^\s'\",;)]*)"
@@ -69,21 +68,23 @@ def decimal_point_hint(text: str) -> str:
     return f" (with a decimal point, {text.replace(',', '.')})" if COMMA.fullmatch(text) else ""
 
 
-def make_reader(expected: str, split: Callable[[str, str], Parsed]) -> Reader[Parsed]:
-    """Return the reader of an option's text by a function that raises ``ValueError``.
+def reader(expected: str) -> Callable[[Callable[[str, str], Parsed]], Reader[Parsed]]:
+    """Turn a function that raises ``ValueError`` into the reader of an option's text.
 
     The function takes the quantity that the option is, whose units texts may have, and the text.
     """
 
-    def read(option: str, text: str) -> Parsed:
-        try:
-            return split(quantity_of_option(option), text)
-        except ValueError:
-            raise InputError(
-                f"{option} {text}: expected {expected}{decimal_point_hint(text)}"
-            ) from None
+    def decorate(split: Callable[[str, str], Parsed]) -> Reader[Parsed]:
+        def read(option: str, text: str) -> Parsed:
+            try:
+                return split(quantity_of_option(option), text)
+            except ValueError:
+                words = f"expected {expected}{decimal_point_hint(text)}"
+                raise InputError(f"{option} {text}: {words}") from None
 
-    return read
+        return read
+
+    return decorate
 
 
 def numbers_reader(
@@ -91,61 +92,61 @@ def numbers_reader(
 ) -> Reader[tuple[float, ...]]:
     """Return a reader of numbers between separators (a regular expression), ``counts`` of them."""
 
-    def split(name: str, text: str) -> tuple[float, ...]:
+    @reader(expected)
+    def read(name: str, text: str) -> tuple[float, ...]:
         numbers = tuple(parse_quantity(name, part) for part in re.split(separator, text))
         wrong = counts and len(numbers) not in counts
         if wrong or (positive and not all(0.0 < one < math.inf for one in numbers)):
             raise ValueError(text)
         return numbers
 
-    return make_reader(expected, split)
+    return read
 
 
-def numbers_of_state(_: str, text: str) -> tuple[float, ...]:
-    pairs = zip(("x1", "x2", "v1", "v2"), text.split(","), strict=True)
-    return tuple(parse_quantity(name, part) for name, part in pairs)
-
-
-def values_of_plane_side(_: str, text: str) -> tuple[str, float, float, int]:
-    name, first, last, count = (part.strip() for part in text.split(","))
-    return name, parse_quantity(name, first), parse_quantity(name, last), parse_plain_int(count)
-
-
-def pairs_of_breakpoints(_: str, text: str, unit: float = 1.0) -> tuple[tuple[float, float], ...]:
-    pairs = [tuple(map(parse_plain_float, part.split(":"))) for part in text.split(",")]
-    if not all(len(pair) == 2 and all(map(math.isfinite, pair)) for pair in pairs):
-        raise ValueError(text)
-    return tuple((frequency, unit * value) for frequency, value in pairs)
-
-
-def pairs_of_density(name: str, text: str) -> tuple[tuple[float, float], ...]:
-    """Parse a density over frequency in (m/s2)^2/Hz, or in g2/Hz with that unit behind it."""
-    numbers = text.removesuffix("g2/Hz")
-    return pairs_of_breakpoints(name, numbers, 1.0 if numbers == text else GRAVITY**2)
-
-
-def numbers_of_orders(_: str, text: str) -> float | tuple[float, ...]:
-    orders = tuple(map(parse_plain_float, text.split(",")))
-    return orders if "," in text else orders[0]
-
-
-read_int = make_reader("a whole number", lambda _, text: parse_plain_int(text))
+read_int = reader("a whole number")(lambda _, text: parse_plain_int(text))
 parse_ends = numbers_reader("FIRST:LAST, two numbers such as 1.2:1.65", ":", (2,))
 parse_number_or_ends = numbers_reader("a number, or FIRST:LAST such as 1.2:1.65", ":", (1, 2))
 parse_rates = numbers_reader("a number > 0, or several such as 1e-4,5e-5,2.5e-5", positive=True)
 parse_sensor = numbers_reader("HZ or HZ:RATE, such as 10000:25600", ":", (1, 2))
-parse_state = make_reader(STATE, numbers_of_state)
-parse_breakpoints = make_reader(BREAKPOINTS, pairs_of_breakpoints)
-parse_density = make_reader(f"{BREAKPOINTS}, or 10:2e-3,200:2e-3g2/Hz", pairs_of_density)
-parse_orders = make_reader("a number, or a list such as 0.5,1,2", numbers_of_orders)
-parse_plane_side = make_reader(
-    "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60 or x_rel,0,20um,60", values_of_plane_side
-)
-Ends = Annotated[tuple[float, ...] | None, parse_ends]
-Bandwidth = Annotated[tuple[float, ...] | None, parse_sensor]
-PlaneSide = Annotated[tuple[str, float, float, int] | None, parse_plane_side]
-Density = Annotated[tuple[tuple[float, float], ...] | None, parse_density]
-Orders = Annotated[float | tuple[float, ...] | None, parse_orders]
+
+
+@reader("X1,X2,V1,V2, four numbers in m and m/s, or with units such as 20um and 3mm/s")
+def parse_state(_: str, text: str) -> tuple[float, ...]:
+    pairs = zip(("x1", "x2", "v1", "v2"), text.split(","), strict=True)
+    return tuple(parse_quantity(name, part) for name, part in pairs)
+
+
+def parse_state_or_file(option: str, text: str) -> tuple[float, ...] | Path:
+    """Parse x1, x2, v1, v2; or the file of an earlier command's result that has states."""
+    return Path(text) if text.endswith(".nc") else parse_state(option, text)
+
+
+@reader("NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60 or x_rel,0,20um,60")
+def parse_plane_side(_: str, text: str) -> tuple[str, float, float, int]:
+    name, first, last, count = (part.strip() for part in text.split(","))
+    return name, parse_quantity(name, first), parse_quantity(name, last), parse_plain_int(count)
+
+
+@reader(BREAKPOINTS)
+def parse_breakpoints(_: str, text: str) -> tuple[tuple[float, float], ...]:
+    pairs = [tuple(map(parse_plain_float, part.split(":"))) for part in text.split(",")]
+    if not all(len(pair) == 2 and all(map(math.isfinite, pair)) for pair in pairs):
+        raise ValueError(text)
+    return tuple((frequency, value) for frequency, value in pairs)
+
+
+@reader(f"{BREAKPOINTS}, or 10:2e-3,200:2e-3g2/Hz")
+def parse_density(option: str, text: str) -> tuple[tuple[float, float], ...]:
+    """Parse a density over frequency in (m/s2)^2/Hz, or in g2/Hz with that unit behind it."""
+    pairs = parse_breakpoints(option, text.removesuffix("g2/Hz"))
+    unit = GRAVITY**2 if text.endswith("g2/Hz") else 1.0
+    return tuple((frequency, unit * value) for frequency, value in pairs)
+
+
+@reader("a number, or a list such as 0.5,1,2")
+def parse_orders(_: str, text: str) -> float | tuple[float, ...]:
+    orders = tuple(map(parse_plain_float, text.split(",")))
+    return orders if "," in text else orders[0]
 
 
 def parse_number(option: str, text: str, name: str = "", other: str = "") -> float:
@@ -161,15 +162,6 @@ def parse_number(option: str, text: str, name: str = "", other: str = "") -> flo
 def parse_positive_number(option: str, text: str) -> float:
     expected = f"a number > 0, such as {option} 0.5"
     return numbers_reader(expected, counts=(1,), positive=True)(option, text)[0]
-
-
-def parse_state_or_file(option: str, text: str) -> tuple[float, ...] | Path:
-    """Parse x1, x2, v1, v2; or the file of an earlier command's result that has states."""
-    return Path(text) if text.endswith(".nc") else parse_state(option, text)
-
-
-Positive = Annotated[float | None, parse_positive_number]
-State = Annotated[Any, parse_state_or_file]
 
 
 def parse_single_rate(option: str, text: str) -> float:
@@ -270,9 +262,6 @@ def parse_values(
             raise InputError(f"{option} {text}: {RANGE}, and at most {MAX_VALUES} values")
         exact = [first + i * step for i in range(int((last - first) / step) + 1)]
     return tuple(map(float, exact))
-
-
-Listed = Annotated[tuple[float, ...] | None, parse_values]
 
 
 def parse_over_values(parameter: str, text: str) -> tuple[float, ...]:

@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import orchestrate
 
@@ -16,8 +16,8 @@ from ..lazy import xr
 from ..model import Shaker, Structure
 from ..units import Units
 from . import grammar, output, printing
-from .answer import FunctionCommand, Runs
-from .command import Command, Keywords, Options, option, option_names, required_by_argument
+from .answer import Files, FunctionCommand, Runs, States
+from .command import NONE, Command, Keywords, Options, default_by_argument, option, option_names
 from .options import Beside, OfSensors, OfStructure
 from .output import Reading, ResultFiles, question_digest, unit_override_note
 
@@ -38,10 +38,7 @@ EXCITATIONS = {
     "hammer": ExcitationKind("Hammer", ("peak", "width")),
     "record": ExcitationKind("read_record"),
 }
-SweepEnds = Annotated[Any, grammar.numbers_reader("FIRST:LAST in Hz, such as 8:20", ":", (2,))]
-Knock = Annotated[
-    Any, grammar.numbers_reader("PEAK:WIDTH in N and s, two numbers such as 20:0.004", ":", (2,))
-]
+KNOCK = "PEAK:WIDTH in N and s, two numbers such as 20:0.004"
 LEVELS = ("g", "acceleration")
 
 
@@ -55,16 +52,25 @@ class OfExcitation(Options):
         "Random: seed; Shock: length delay; Hammer: at half; read_record: unit scale"
     )
     if_given = True
-    swept_sine: SweepEnds = option("frequencies, Hz; downwards too", value="FIRST:LAST")
-    stepped_sine: grammar.Listed = option(
-        "frequencies, Hz; or a list A,B,...", value="FIRST:LAST:STEP"
+    swept_sine: Any = option(
+        "frequencies, Hz; downwards too",
+        value="FIRST:LAST",
+        read=grammar.numbers_reader("FIRST:LAST in Hz, such as 8:20", ":", (2,)),
     )
-    random: grammar.Density = option(
+    stepped_sine: Any = option(
+        "frequencies, Hz; or a list A,B,...", value="FIRST:LAST:STEP", read=grammar.parse_values
+    )
+    random: Any = option(
         "density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz, or in g2/Hz with that behind it",
         value="PSD",
+        read=grammar.parse_density,
     )
     shock: str | None = option("half-sine, sawtooth or trapezoid", value="SHAPE")
-    hammer: Knock = option("largest force, N, and width of a knock, s", value="PEAK:WIDTH")
+    hammer: Any = option(
+        "largest force, N, and width of a knock, s",
+        value="PEAK:WIDTH",
+        read=grammar.numbers_reader(KNOCK, ":", (2,)),
+    )
     record: Any = option("measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc", value="FILE")
     g: str | None = option(
         "peak acceleration, in 9.80665 m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too; "
@@ -107,14 +113,14 @@ class OfExcitation(Options):
             raise InputError(
                 f"excitation: {words} given; expected one of {option_names(EXCITATIONS)}"
             )
-        takes = {name: required_by_argument(kind.calls) for name, kind in EXCITATIONS.items()}
+        takes = {name: default_by_argument(kind.calls) for name, kind in EXCITATIONS.items()}
         leveled = [name for name, kind in EXCITATIONS.items() if kind.level]
         owners = {**dict.fromkeys(LEVELS, leveled), "column": ["record"]}
         for name in given.keys() - EXCITATIONS.keys() - owners.keys():
             owners[name] = [one for one in EXCITATIONS if name in takes[one]]
         self.refuse_without(owners, chosen)
         for name in ("duration", "length"):
-            if takes[chosen[0]].get(name) and name not in given:
+            if takes[chosen[0]].get(name) is NONE and name not in given:
                 raise InputError(f"{option_names(chosen)}: expected --{name} with it, in s")
         return chosen[0]
 
@@ -248,7 +254,7 @@ class AnalysedRecords(Options):
     beside: list[str] = option(
         "another record in the same picture; may be repeated", (), value="LABEL=FILE"
     )
-    begin: float | None = option("time it begins at, s", name="--from")
+    begin: float | None = option("time it begins at, s", names=("--from",))
     to: float | None = option("time it ends at, s")
 
 
@@ -289,13 +295,7 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Funct
     def structures_by_state(self, structure: Any) -> dict[str, Any]:
         return self.records
 
-    def compute(
-        self,
-        states: Mapping[str, Any],
-        others: Any,
-        question: Keywords,
-        files: Mapping[str, ResultFiles],
-    ) -> dict[str, xr.Dataset]:
+    def compute(self, states: States, others: Any, question: Keywords, files: Files) -> Runs:
         results = {}
         for label, record in states.items():
             try:
@@ -332,7 +332,7 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Funct
 
     def settings_by_analysis(self, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
         chosen = self.given_options(Settings)
-        takes = {name: required_by_argument(row[0]) for name, row in ANALYSES.items()}
+        takes = {name: default_by_argument(row[0]) for name, row in ANALYSES.items()}
         owners = {one: [name for name in takes if one in takes[name]] for one in chosen}
         self.refuse_without(owners, names, "--show ")
         return {name: {o: chosen[o] for o in chosen if o in takes[name]} for name in names}
@@ -372,9 +372,6 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Funct
         return orchestrate.read_record(path, **reading)
 
 
-Pair = Annotated[Any, grammar.numbers_reader("H1,H2, two numbers such as 3,2", ",", (2,))]
-
-
 class Halves(Reading, Command):
     """Fit a structure to knocks of a hammer on each half, and write it as TOML file."""
 
@@ -384,7 +381,11 @@ class Halves(Reading, Command):
         position=True,
         needed=True,
     )
-    thicknesses: Pair = option("of layers 1 and 2 of a sound beam, in any unit", value="H1,H2")
+    thicknesses: Any = option(
+        "of layers 1 and 2 of a sound beam, in any unit",
+        value="H1,H2",
+        read=grammar.numbers_reader("H1,H2, two numbers such as 3,2", ",", (2,)),
+    )
     output: Path | None = option("where to write the structure", value="FILE.toml")
     examples = """
   {program} halves half1.csv half2.csv --output beam.toml

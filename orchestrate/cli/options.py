@@ -338,7 +338,7 @@ class Over(Options):
             raise InputError(f"--over {over}: omega varies; expected {expected} instead of --eta")
 
 
-def parse_continued_parameter(name: str, limits: str) -> tuple[str, tuple[float, ...]]:
+def parse_continued(name: str, limits: str) -> tuple[str, tuple[float, ...]]:
     """Return a continued parameter's name in the public API, and its limits in that one's unit."""
     if name == "g":
         raise InputError("--over g: expected --over amplitude, in m, at one frequency")
@@ -353,13 +353,16 @@ class OfSensors(Options):
     """Options of accelerometers that read a simulated motion."""
 
     heading = "sensors of a simulated test"
-    sensor: grammar.Bandwidth = option(
+    sensor: Any = option(
         "what accelerometers of this bandwidth read, with the spikes of impacts; RATE: samples a "
         "second (default: 2.56 times it)",
         value="HZ[:RATE]",
+        read=grammar.parse_sensor,
     )
     noise: float | None = option("density of their noise, (m/s2)/sqrt(Hz), or 30ug of g/sqrt(Hz)")
-    range: grammar.Positive = option("of the sensors, g (default: none)")
+    range: float | None = option(
+        "of the sensors, g (default: none)", read=grammar.parse_positive_number
+    )
 
     def read_sensor(
         self, usual: Callable[..., orchestrate.Sensor] | None = None

@@ -39,7 +39,7 @@ class Reading(Options):
         "face2, force1, force2; A,B,... in that order without forces; or the file that the command "
         "channels writes (default: by usual names)",
         value="FILE.toml|A=X,...|X,...",
-        also="--columns",
+        names=("--channels", "--columns"),
     )
 
     def record_display_units(self) -> Units:

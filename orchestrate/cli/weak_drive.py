@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -15,7 +15,7 @@ from ..lazy import np, xr
 from ..model import Drive, Structure
 from ..units import display_units_of, format_quantity, with_units
 from . import grammar, printing
-from .answer import FunctionCommand, Only, Runs
+from .answer import Files, FunctionCommand, Only, Runs, States
 from .command import Keywords, Options, option
 from .drive import DriveCommand, OfController, OfRamp, OfSchedule, Stepped
 from .options import OfStructure, Over
@@ -83,13 +83,7 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         more = {"control": control, "hold": question["hold"]}
         return make_couple_job(structure, motor, question["voltage"], scheme, **more)
 
-    def compute(
-        self,
-        states: Mapping[str, Any],
-        others: Any,
-        question: Keywords,
-        files: Mapping[str, ResultFiles],
-    ) -> dict[str, xr.Dataset]:
+    def compute(self, states: States, others: Any, question: Keywords, files: Files) -> Runs:
         from ..fmu import make_fmu_finder
         from ..running.options import RunOptions
         from ..running.runner import compute_into_folder
@@ -351,7 +345,7 @@ class OfDrive(Options):
 
     heading, rank = "the drive", 1
     drive: Path = option("FMI 2.0 or 3.0", value="FMU", needed=True)
-    listed: bool = option("show its variables, propose connections, and end", name="--list")
+    listed: bool = option("show its variables, propose connections, and end", names=("--list",))
     connect: list[str] = option(
         "box_acceleration (or box_velocity, box_position) and box_force, by names of the drive, or "
         "force1, force2, its forces on the halves; a "

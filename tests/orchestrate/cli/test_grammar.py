@@ -29,14 +29,14 @@ def test_every_default_is_that_of_the_function_and_in_the_help():
         assert found().name() == command  # nothing of it is left abstract
         function = getattr(orchestrate, found.calls, None)
         parameters = inspect.signature(function).parameters if inspect.isfunction(function) else {}
-        texts = [option.help for option, _, _ in found.options().values()]
+        texts = [option.help for option in found.options().values()]
         assert len(set(texts)) == len(texts) and all(texts), command
-        for name, (option, _, _) in found.options().items():
+        for name, option in found.options().items():
             if name not in parameters or name in ("structure", "drive", *CONVERTED):
                 continue
             usual = parameters[name].default
             if usual not in (None, False, inspect.Parameter.empty):
-                assert "(default: " in option.help_with_default, (command, name)
+                assert "(default: " in option.help, (command, name)
                 assert (option.default, type(option.default)) == (usual, type(usual))
                 compared += 1
     assert compared > 40
