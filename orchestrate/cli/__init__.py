@@ -89,14 +89,8 @@ def program_name() -> str:
     return "vibroimpact" if called.startswith("vibroimpact") else "python -m orchestrate"
 
 
-def __getattr__(name: str) -> cyclopts.App:
-    """Return a command as cyclopts knows it; its function is imported then."""
-    if name not in COMMANDS:
-        raise AttributeError(name)
-    return COMMANDS[name].cyclopts_app()
-
-
-def make_app() -> cyclopts.App:
+def make_app(words: Sequence[str]) -> cyclopts.App:
+    """Return all commands as cyclopts knows them, with options where a word of the line is one."""
     app = cyclopts.App(
         name=program_name(),
         help="Simulate and analyse a vibro-impacting structure through its FMUs: its responses, "
@@ -107,7 +101,9 @@ def make_app() -> cyclopts.App:
         exit_on_error=False,
     )
     for number, (name, kind) in enumerate(COMMANDS.items()):
-        app.command(f"{__name__}:{name}", name=name, help=kind.__doc__, sort_key=number)
+        own = kind.cyclopts_app() if name in words else cyclopts.App(name=name, help=kind.__doc__)
+        own.sort_key = number
+        app.command(own)
     return app
 
 
@@ -115,8 +111,8 @@ def help_epilogue(name: str) -> str:
     program = program_name()
     if name not in COMMANDS:
         return EXAMPLES.format(program=program, sets=format_shipped_sets())
-    command = COMMANDS[name]
-    flags, examples = command.flags(), command.examples.replace("{program}", program)
+    flags = COMMANDS[name].flags()
+    examples = COMMANDS[name].examples.replace("{program}", program)
     quantities = QUANTITIES if "--structure" in flags else ""
     more = "".join(text for flag, text in REMARKS.items() if flag in flags)
     return f"{quantities}examples:{examples}{more}"
@@ -147,9 +143,8 @@ def parse_arguments(arguments: Sequence[str]) -> Command | None:
     if name not in COMMANDS and not name.startswith("-"):
         meant = did_you_mean(closest_name(name, COMMANDS))
         raise InputError(f"{name}: no command{meant} {help_is_at}")
-    app = make_app()
     try:
-        call, bound, _ = app.parse_args(words)
+        call, bound, _ = make_app(words).parse_args(words)
     except CycloptsError as error:
         if name not in COMMANDS:
             raise InputError(f"{name}: no option before a COMMAND {help_is_at}") from None
@@ -160,11 +155,6 @@ def parse_arguments(arguments: Sequence[str]) -> Command | None:
     if "--version" not in words:
         print(help_epilogue(name))
     return None
-
-
-def set_up_logging() -> None:
-    logging.basicConfig(format="%(message)s")
-    logging.getLogger(__package__.partition(".")[0]).setLevel(logging.INFO)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -181,7 +171,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def run_command(arguments: Sequence[str]) -> int:
-    set_up_logging()
+    logging.basicConfig(format="%(message)s")
+    logging.getLogger(__package__.partition(".")[0]).setLevel(logging.INFO)
     if store := sys.modules.get(STORE):  # of a command before, in this process
         store.STARTED.clear()
         store.FINISHED.clear()
@@ -234,9 +225,7 @@ def describe_progress_kept() -> str:
 def print_warnings_in_one_line(chosen: Command) -> Iterator[None]:
     usual = warnings.showwarning
 
-    def show_in_one_line(
-        message: Warning | str, category: type[Warning], *place: Any, **more: Any
-    ) -> None:
+    def show_in_one_line(message: Any, category: Any, *place: Any, **more: Any) -> None:
         if category is UserWarning:
             print_error(f"warning: {with_option_names(str(message), chosen)}")
         else:

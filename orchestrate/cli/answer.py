@@ -128,7 +128,7 @@ class FunctionCommand(Command):
         for state, data in in_units.items():
             if not self.stores:
                 write_unstored_netcdf(files[state], results[state])
-            files[state].write_and_print_paths(data)
+            files[state].write_tables(data)
         if picture and self.has_picture(question):
             common.write_pictures(partial(self.draw, shown, question, *branches))
         self.write_further_files(common, question, shown, results)
@@ -169,7 +169,8 @@ class FunctionCommand(Command):
         varied = str(getattr(self, "over", "")).replace(" ", "").split(",")  # two of a border
         names = [*varied, *(name for name in UNIT_OF_OPTION if getattr(self, name, None))]
         given = [UNIT_OF_OPTION[name] for name in names if name in UNIT_OF_OPTION]
-        keys = self.toml_section("excitation") if "frequency" in question and not given else ()
+        own = "frequency" in question and not given
+        keys = self.toml_tables.get("excitation", {}) if own else {}
         words = [key.removeprefix("frequency_") for key in keys]
         given += [ALIKE.get(word, word) for word in words if word in (*UNITS.values(), "eta")]
         in_g = getattr(self, "g", None) is not None or "acceleration_g" in keys

@@ -165,15 +165,11 @@ what it gives:
         guess: Structure | None,
         others: Sequence[xr.Dataset],
     ) -> dict[Sweep, xr.Dataset]:
-        factors = dict(
-            zip(("acceleration1", "acceleration2"), self.participation or (), strict=False)
-        )
-        verdicts = orchestrate.detect_all(
-            {names[sweep]: [record, *others] for sweep, record in records.items()},
-            guess,
-            participation=factors or None,
-            **self.running_keywords(self.output),
-        )
+        faces = ("acceleration1", "acceleration2")
+        factors = dict(zip(faces, self.participation or (), strict=False)) or None
+        of_beams = {names[sweep]: [record, *others] for sweep, record in records.items()}
+        running = self.running_keywords(self.output)
+        verdicts = orchestrate.detect_all(of_beams, guess, participation=factors, **running)
         described = {}
         for sweep, name in names.items():
             verdict = verdicts[name]
@@ -188,14 +184,14 @@ what it gives:
 
     def origin_attributes(self, path: Path, record: xr.Dataset) -> dict[str, str]:
         told = ("columns", "unit", "converted", "time_base")
-        words = {f"record_{name}": record.attrs.get(name, "") for name in told}
-        words |= {"record_file": path.name, "record_sha256": file_checksum(path)}
-        words |= {
+        words = {
+            **{f"record_{name}": record.attrs.get(name) for name in told},
+            **{"record_file": path.name, "record_sha256": file_checksum(path)},
             "record_unit_note": unit_override_note(record.attrs),
             "command": self.command_line,
+            "sensors": record.attrs.get("sensors"),
+            "guess_file": str(self.structure or ""),
         }
-        words |= {"sensors": record.attrs.get("sensors", "")}
-        words |= {"guess_file": str(self.structure or "")}
         return {name: text for name, text in words.items() if text}
 
     def write_and_print_files(self, stem: str, answers: dict[str, xr.Dataset]) -> None:
@@ -205,7 +201,8 @@ what it gives:
             if ending:  # the verdict is stored already
                 output.write_unstored_netcdf(files, answer)
             shown = with_units(answer, units)
-            files.write_and_print_paths(shown, partial(orchestrate.plot, shown))
+            files.write_tables(shown)
+            files.write_pictures(partial(orchestrate.plot, shown))
         page = self.output / f"{stem}.html"
         more: Any = {"output": page, "notes": self.notes or "", "units": units}
         print(orchestrate.report(*answers.values(), **more))

@@ -16,15 +16,9 @@ from ..lazy import xr
 from ..model import Drive, Structure
 from ..model.drive import motor_constant_and_resistance
 from ..units import Units
+from . import grammar
 from .answer import FunctionCommand, Runs
 from .command import Keywords, Options, option, option_names
-from .grammar import (
-    parse_changes,
-    parse_ends,
-    parse_number_or_ends,
-    parse_positive_number,
-    parse_single_rate,
-)
 from .notes import warn_of_unusual_voltage
 from .options import Over, print_assumptions
 
@@ -32,7 +26,7 @@ if TYPE_CHECKING:
     from ..weak_drive.controllers import Controller
     from ..weak_drive.schedule import Schedule
 
-USUAL = {"quick": ("1.2:1.65", 1e-4), "beam": ("1.25:1.6", 5e-6), "rig": ("0.95:1.24", 5e-5)}
+USUAL = {"quick": ((1.2, 1.65), 1e-4), "beam": ((1.25, 1.6), 5e-6), "rig": ((0.95, 1.24), 5e-5)}
 USUAL_RATES = ", ".join(f"{rate:g} for {name}" for name, (_, rate) in USUAL.items())
 RATE = 1e-4  # of eta0, in a time 1/omega
 CONTROLS = {  # options of controllers, with their settings
@@ -64,13 +58,13 @@ class OfMotor(Options):
         "of the motor, V: by its datasheet, all three in place of motor_constant and "
         "armature_resistance",
         value="V",
-        read=parse_positive_number,
+        read=grammar.parse_positive_number,
     )
     no_load_rpm: float | None = option(
-        "its speed without load", value="RPM", read=parse_positive_number
+        "its speed without load", value="RPM", read=grammar.parse_positive_number
     )
     stall_torque: float | None = option(
-        "its torque at rest, N m", value="N.M", read=parse_positive_number
+        "its torque at rest, N m", value="N.M", read=grammar.parse_positive_number
     )
 
     def read_structure_and_drive(self) -> tuple[Structure, Drive]:
@@ -82,10 +76,15 @@ class OfMotor(Options):
                 "--drive is missing: the motor of the set quick is far too slow for "
                 f"{structure.omega:.4g} rad/s; expected --drive beam, rig, or a file with [motor]"
             )
-        changes, of_drive = parse_changes(self.set), {field.name for field in fields(Drive)}
+        changes, of_drive = grammar.parse_changes(self.set), {field.name for field in fields(Drive)}
         motor = {name: float(changes.pop(name)) for name in list(changes) if name in of_drive}
         motor |= self.motor_from_datasheet(motor)
-        require_masses_with_frequencies(source, changes)
+        named = next((name for name in ("f1", "f2") if name in changes), None)
+        unknown = {"m1", "m2"} - changes.keys() - ({"m2"} if "mu" in changes else set())
+        if named and unknown and source in ("paper", "quick"):
+            text = f"--set {named}={changes[named]:g}: the motor feels the masses, and those of"
+            expected = "expected --set m1=KG --set m2=KG too, or a --structure with them"
+            raise InputError(f"{text} {source} are no beam's; {expected}")
         changed = structure.replace(**changes)
         print_assumptions(changed, source, changes)
         return changed, drive.replace(**motor)
@@ -104,13 +103,8 @@ class OfMotor(Options):
             text = f"--set {twice[0]}={changes[twice[0]]:g}: given with --rated-voltage"
             raise InputError(f"{text}; expected one of them")
         voltage, rpm, torque = given.values()
-        return dict(
-            zip(
-                names,
-                motor_constant_and_resistance(voltage, TURN * rpm / 60.0, torque),
-                strict=True,
-            )
-        )
+        values = motor_constant_and_resistance(voltage, TURN * rpm / 60.0, torque)
+        return dict(zip(names, values, strict=True))
 
 
 class Stepped(Options):
@@ -135,32 +129,22 @@ class OfRamp(Options):
 
     def parse_voltages(self, structure: Structure, drive: Drive) -> tuple[float, ...]:
         """Return one voltage or a ramp's first and last one, V; by default around the jumps."""
-        from ..weak_drive.couple import require_motor
         from ..weak_drive.couple_all import default_eta0_range
 
         self.given_option("eta0", "voltage")
-        require_motor(structure, drive)
         volts = drive.volts(structure)
         for name, unit in (("voltage", 1.0), ("eta0", volts)):
             if text := getattr(self, name):
-                given = tuple(unit * one for one in parse_number_or_ends(f"--{name}", text))
+                given = tuple(unit * one for one in grammar.parse_number_or_ends(f"--{name}", text))
                 warn_of_unusual_voltage(f"--{name} {text}", given, volts)
                 if abs(given[-1]) < abs(given[0]):
                     print(f"--{name} {text}: the voltage falls first, and rises when it comes back")
                 return given
-        has_own_parameters = self.set or self.structure or self.rated_voltage is not None
-        if self.drive in USUAL and not has_own_parameters:
-            first, last = parse_ends("--eta0", USUAL[self.drive][0])
-            return first * volts, last * volts
-        first, last = default_eta0_range(structure.as_bonded(), drive)
+        if self.set or self.structure or self.rated_voltage or self.drive not in USUAL:
+            first, last = default_eta0_range(structure.as_bonded(), drive)
+        else:
+            first, last = USUAL[self.drive][0]
         return first * volts, last * volts
-
-    def parse_ramp_ends(self, structure: Structure, drive: Drive) -> tuple[float, ...]:
-        voltages = self.parse_voltages(structure, drive)
-        if len(voltages) != 2:
-            name = "voltage" if self.voltage else "eta0"
-            parse_ends(f"--{name}", getattr(self, name))
-        return voltages
 
 
 class OfSchedule(OfRamp):
@@ -189,14 +173,13 @@ class OfSchedule(OfRamp):
     def parse_ramp_rate(self, structure: Structure, drive: Drive) -> float:
         self.given_option("rate", "volt_rate")
         if self.volt_rate is not None:
-            return parse_single_rate("--volt-rate", self.volt_rate)
-        usual = USUAL.get(self.drive, ("", RATE))[1]
-        rate = usual if self.rate is None else parse_single_rate("--rate", self.rate)
+            return grammar.parse_single_rate("--volt-rate", self.volt_rate)
+        rate = USUAL[self.drive][1] if self.drive in USUAL else RATE
+        if self.rate is not None:
+            rate = grammar.parse_single_rate("--rate", self.rate)
         return drive.volts(structure) * structure.omega * rate
 
-    def make_schedule(
-        self, structure: Structure, drive: Drive, control: Controller | None
-    ) -> Schedule:
+    def make_schedule(self, structure: Structure, drive: Drive, control: Any) -> Schedule:
         from ..weak_drive.couple import schedule_from_arguments
         from ..weak_drive.schedule import Course
 
@@ -207,20 +190,17 @@ class OfSchedule(OfRamp):
         ends = self.parse_voltages(structure, drive)
         if (len(ends) == 1) != (self.duration is not None):
             given = " to ".join(f"{end:g}" for end in ends)
-            raise InputError(
-                f"voltage {given} V: expected --duration, in s, with one voltage and only so"
-            )
-        return schedule_from_arguments(
-            structure,
-            drive,
-            ends if len(ends) == 2 else ends[0],
-            self.duration,
-            rate=self.parse_ramp_rate(structure, drive),
-            settle=self.settle / structure.omega,
-            increment=self.increment * drive.volts(structure),
-            back=not self.one_way,
-            spin_up=0.0 if control else None,
-        )
+            expected = "expected --duration, in s, with one voltage and only so"
+            raise InputError(f"voltage {given} V: {expected}")
+        ramp: Any = {
+            "rate": self.parse_ramp_rate(structure, drive),
+            "settle": self.settle / structure.omega,
+            "increment": self.increment * drive.volts(structure),
+            "back": not self.one_way,
+            "spin_up": 0.0 if control else None,
+        }
+        voltage = ends if len(ends) == 2 else ends[0]
+        return schedule_from_arguments(structure, drive, voltage, self.duration, **ramp)
 
 
 class OfController(Options):
@@ -242,14 +222,12 @@ class OfController(Options):
 
     def make_controller(self, structure: Structure, drive: Drive) -> Controller | None:
         from ..weak_drive import own_resonance
-        from ..weak_drive.couple import require_motor
 
         chosen = self.given_option(*CONTROLS) or ""
         given = self.given_options(OfController)
         owners = {name: [control] for control, names in CONTROLS.items() for name in names}
         self.refuse_without(owners, [chosen])
         own = {name.removeprefix("speed_"): given[name] for name in given if name not in CONTROLS}
-        require_motor(structure, drive)
         constant = drive.motor_constant
         if chosen == "speed_control":
             slow = drive.rotor_inertia * drive.armature_resistance / constant**2
@@ -260,17 +238,6 @@ class OfController(Options):
             swing = {"filter_time": 30.0 / structure.omega, "low": 0.6, **own}
             return orchestrate.SpeedGradient(passed=passed, **swing)
         return None
-
-
-def require_masses_with_frequencies(source: str, changes: Mapping[str, Any]) -> None:
-    """Raise if a beam's frequencies are set but its masses are not: the motor feels them."""
-    unknown = {"m1", "m2"} - changes.keys() - ({"m2"} if "mu" in changes else set())
-    named = next((name for name in ("f1", "f2") if name in changes), None)
-    if named and unknown and source in ("paper", "quick"):
-        raise InputError(
-            f"--set {named}={changes[named]:g}: the motor feels the masses, and those of {source} "
-            "are no beam's; expected --set m1=KG --set m2=KG too, or a --structure with them"
-        )
 
 
 class DriveCommand(OfMotor, FunctionCommand):
@@ -294,20 +261,25 @@ class DriveCommand(OfMotor, FunctionCommand):
         return self.read_units().with_defaults(Units("rpm" if self.no_load_rpm else ""))
 
     def read_question(self) -> tuple[Any, ...]:
+        from ..weak_drive.couple import require_motor
+
         structure, drive = self.read_structure_and_drive()
         times = [name for name in ("step", "hold") if name in self.options()]
         question = {**self.function_keywords(), **self.options_in_seconds(structure, *times)}
+        if isinstance(self, OfRamp):
+            require_motor(structure, drive)
         if isinstance(self, OfController):
             question["control"] = self.make_controller(structure, drive)
         if isinstance(self, OfSchedule):
             question["voltage"] = self.make_schedule(structure, drive, question["control"])
         elif isinstance(self, OfRamp):
-            question["voltage"] = self.parse_ramp_ends(structure, drive)
-        return (
-            structure,
-            drive,
-            question | (self.over_arguments() if isinstance(self, Over) else {}),
-        )
+            question["voltage"] = ends = self.parse_voltages(structure, drive)
+            if len(ends) != 2:
+                name = "voltage" if self.voltage else "eta0"
+                grammar.parse_ends(f"--{name}", getattr(self, name))
+        if isinstance(self, Over):
+            question |= self.over_arguments()
+        return structure, drive, question
 
     def options_in_seconds(self, structure: Structure, *names: str) -> Keywords:
         """Return options in 1/omega, such as ``--step``, in s; None where they are not given."""

@@ -28,6 +28,7 @@ ASSUMED = {  # what a beam needs besides what is set, with the names that set it
     **{"m1": ("mu",), "m2": ("mu",), "f1": ("k1", "omega"), "f2": ("k2", "kappa")},
     **{"zeta1": ("d1", "D", "D1"), "zeta2": ("d2", "D", "D2"), "e": ()},
 }
+UNIT_OF_LETTER = {"m": " kg", "f": " Hz", "z": " %", "e": ""}  # the first of those
 CONTINUED = (  # what a continuation varies, for help texts
     "eta, hz, rpm, frequency, amplitude, box_acceleration or a parameter of the structure"
 )
@@ -96,7 +97,7 @@ class OfStructure(Options):
         changes = grammar.parse_changes(self.set, structure.wall)
         structure = structure.replace(**changes)
         print_assumptions(structure, self.structure, changes)
-        stated = {"e"} if self.structure in SETS else self.toml_section("structure")
+        stated = {"e"} if self.structure in SETS else self.toml_tables.get("structure", {})
         if not structure.bonded and "e" not in {*stated, *changes}:
             print(f"assumed: e = {structure.e:g} ({self.structure} has none; --set e=VALUE)")
         return structure
@@ -104,9 +105,6 @@ class OfStructure(Options):
     @cached_property
     def toml_tables(self) -> dict[str, Any]:
         return read_tables(resolve_path(self.structure)) if self.structure else {}
-
-    def toml_section(self, name: str) -> dict[str, Any]:
-        return self.toml_tables.get(name, {})
 
 
 class OfStored(OfStructure):
@@ -165,9 +163,7 @@ def print_structure_difference(flag: str, path: Any, stored: Structure, asked: S
 
 def print_assumptions(structure: Structure, source: str, changes: Mapping[str, Any]) -> None:
     """Print which parameters of the user's beam are taken from a shipped set; warn of per cent."""
-    warn_of_ratios_in_per_cent(
-        {name: changes[name] for name in ("zeta1", "zeta2") if name in changes}
-    )
+    warn_of_ratios_in_per_cent({n: x for n, x in changes.items() if n in ("zeta1", "zeta2")})
     if note := heavy_mass_note(structure):
         print(note)
     if source not in SETS or not changes.keys() & {"f1", "f2"}:
@@ -180,17 +176,12 @@ def print_assumptions(structure: Structure, source: str, changes: Mapping[str, A
             usual = f"{name} would be {structure.get(name):.4g} Hz, as in the set {source}"
             text = f"expected --set {name}=HZ too, or --set wall=true for one mass before a stop"
             raise InputError(f"--set {own}={changes[own]:g}: {usual}; {text}")
-    texts = [f"{name} = {format_parameter_with_unit(name, structure.get(name))}" for name in left]
+    percent = dict.fromkeys(("zeta1", "zeta2"), 100.0)
+    shown = {name: structure.get(name) * percent.get(name, 1.0) for name in left}
+    texts = [f"{name} = {shown[name]:.4g}{UNIT_OF_LETTER[name[0]]}" for name in left]
     if texts:
         masses = "; only the ratio of the masses acts" if "m2" in left else ""
         print(f"assumed, as in the set {source}: {', '.join(texts)} (--set){masses}")
-
-
-def format_parameter_with_unit(name: str, value: float) -> str:
-    """Format a parameter's value with its unit; damping ratios in per cent."""
-    if name.startswith("zeta"):
-        return f"{100.0 * value:.4g} %"
-    return f"{value:.4g}{ {'m': ' kg', 'f': ' Hz'}.get(name[0], '') }"
 
 
 # -- the box's motion -----------------------------------------------------------------------------
@@ -242,31 +233,32 @@ class OfBox(OfPushes):
         levels = grammar.parse_one_or_more("--g", self.g) if by_level else ()
         name = self.given_frequency_option()
         amplitude = None if by_level else self.amplitude_or_level()
-        if name is amplitude is None and not by_level and (own := self.take_excitation_from_file()):
-            return own
         if name is None:
+            own = amplitude is None and not by_level and self.take_excitation_from_file()
+            if own:
+                return own
             text = f"expected one of {option_names(FREQUENCIES)}"
             raise InputError(f"frequency: nothing given; {text}")
         text = getattr(self, name)
         values = grammar.parse_one_or_more(f"--{name}", text, one_frequency)
         to_rad_s = TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * structure.omega
-        frequencies = apply_to_each(to_rad_s, values)
+        box: Keywords = {"frequency": apply_to_each(to_rad_s, values)}
         if by_level:
-            level = apply_to_each(lambda peak: peak * GRAVITY, levels)
-            return {"frequency": frequencies, "level": level, **self.given_pushes()}
-        if amplitude is None and name != "eta":
-            raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
-        if amplitude is None:
+            box["level"] = apply_to_each(lambda peak: peak * GRAVITY, levels)
+        elif amplitude is None:
+            if name != "eta":
+                raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
             if needs_metres and not math.isclose(structure.omega, 1.0):
-                raise InputError(
-                    f"--eta {text}: omega is {structure.omega:g} rad/s; expected --amplitude in m "
-                    "or --g with it (1/eta^2 m is the paper's, for omega = 1 rad/s)"
-                )
-            return {"eta": values, **self.given_pushes()}
-        if self.g is not None:
+                paper = "(1/eta^2 m is the paper's, for omega = 1 rad/s)"
+                omega = f"--eta {text}: omega is {structure.omega:g} rad/s"
+                raise InputError(f"{omega}; expected --amplitude in m or --g with it {paper}")
+            box = {"eta": values}
+        elif self.g is None:
+            box["amplitude"] = amplitude
+        else:
             peak = amplitude * GRAVITY
-            amplitude = apply_to_each(lambda value: peak / (value * value), frequencies)
-        return {"frequency": frequencies, "amplitude": amplitude, **self.given_pushes()}
+            box["amplitude"] = apply_to_each(lambda x: peak / (x * x), box["frequency"])
+        return {**box, **self.given_pushes()}
 
     def take_excitation_from_file(self) -> Keywords | None:
         """Return keywords of the excitation in the structure's file, or None; set ``--phase``."""

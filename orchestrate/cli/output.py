@@ -243,22 +243,17 @@ class ResultFiles:
         return [table.with_suffix(f".{ending}") for ending in self.formats if ending != "nc"]
 
     def picture_paths(self, *endings: str) -> list[Path]:
-        size = self.size.replace(":", "-")
-        picture = self.path_with_suffixes(self.units, self.over, *endings, size)
-        return [picture.with_suffix(f".{ending}") for ending in self.plots]
+        names = self.units, self.over, *endings, self.size.replace(":", "-")
+        return [self.path_with_suffixes(*names).with_suffix(f".{one}") for one in self.plots]
 
-    def write_and_print_paths(
-        self, data: xr.Dataset, draw: Callable[[], Any] | None = None
-    ) -> None:
-        """Write missing tables and pictures next to the NetCDF file; print all paths."""
+    def write_tables(self, data: xr.Dataset) -> None:
+        """Write missing tables next to the NetCDF file; print the paths of all."""
         from ..running.formats import write
 
         print(f"{self.result}{'' if self.fresh else ': complete already'}")
         for path in self.table_paths():
             existing = [] if self.fresh else existing_table_files(path)
             print(*(existing or sorted(write(data, path))), sep="\n")
-        if draw is not None:
-            self.write_pictures(draw)
 
     def write_pictures(self, draw: Callable[[], Any], *endings: str) -> None:
         """Draw a picture if it is new or missing; print its paths."""

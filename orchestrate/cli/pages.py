@@ -43,27 +43,20 @@ class Build(Command):
   {program} build --folder /tmp/fmus --platforms all"""
 
     def __call__(self) -> None:
-        from ..fmu import (
-            FORMS,
-            PLAIN_FORMS,
-            build,
-            build_libraries,
-            build_web_kernels,
-            source_forms_of,
-        )
+        from .. import fmu
 
         if self.folder is not None:
             check_output_folder(self.folder, "--folder")
-        forms = PLAIN_FORMS if self.plain else FORMS
+        forms = fmu.PLAIN_FORMS if self.plain else fmu.FORMS
         platforms = [name for name in (self.platforms or "").split(",") if name]
         if self.sources_only:
             if platforms:
                 raise InputError("--platforms with --sources-only: expected one of them")
-            forms = source_forms_of(forms)
-        made = build(self.folder, forms, platforms=platforms)
+            forms = fmu.source_forms_of(forms)
+        made = fmu.build(self.folder, forms, platforms=platforms)
         if not (self.plain or self.sources_only):
-            made += build_libraries(self.folder, platforms)
-            made += build_web_kernels(self.folder)
+            made += fmu.build_libraries(self.folder, platforms)
+            made += fmu.build_web_kernels(self.folder)
         for path in made:
             print(f"{path}  {path.stat().st_size / 1024:.0f} kB")
 
@@ -98,14 +91,9 @@ class Explore(OfStored, Reading, InUnits, Command):
         record, branches = self.read_record(), None
         if self.branches is not None:
             branches = load_earlier_result("--branches", self.branches)
-        page = explore(
-            self.read_sweep_or_structure(branches),
-            output=self.output,
-            branches=branches,
-            record=record,
-            units=self.read_units(),
-            build_folder=self.build_folder,
-        )
+        more: Any = {"branches": branches, "record": record, "units": self.read_units()}
+        more |= {"output": self.output, "build_folder": self.build_folder}
+        page = explore(self.read_sweep_or_structure(branches), **more)
         print(f"{page}  {page.stat().st_size / 1024:.0f} kB")
         if not self.no_open:
             import webbrowser
@@ -197,15 +185,10 @@ class Paper(InFolder, HowRun, Command):
         from ..paper.reproduce import reproduce
         from ..paper.resolution import FULL, QUICK
 
-        folder = Path("results") / ("paper-quick" if self.quick else "paper")
-        output = self.output or folder
+        output = self.output or Path("results", "paper-quick" if self.quick else "paper")
         check_output_folder(output)
         figures = None if self.figures is None else self.figures.split(",")
         resolution = QUICK if self.quick else FULL
         outcome = reproduce(output, resolution, figures, self.running_keywords())
-        lines = [
-            *claim_lines(outcome.claims_and_regions),
-            *outcome.pictures.values(),
-            outcome.report,
-        ]
-        print(*lines, sep="\n")
+        print(*claim_lines(outcome.claims_and_regions), sep="\n")
+        print(*outcome.pictures.values(), outcome.report, sep="\n")

@@ -29,23 +29,6 @@ PAIR = "NAME=VALUE"
 ERROR_LIMIT = 1e-6  # of the motor's work: larger errors give a warning
 
 
-def draw_couple(
-    title: str, results: Runs, job: CoupleJob, branches: xr.Dataset | None = None
-) -> Any:
-    from ..show.passage import draw_passage_histories
-    from ..show.weak_drive import draw_ramps
-    from ..weak_drive import averaged, own_resonance
-    from ..weak_drive.schedule import Ramp
-
-    system = job.structure, job.drive
-    if job.control or not isinstance(job.schedule, Ramp):
-        resonance = own_resonance.dividing_speed(*system) * job.structure.omega
-        return draw_passage_histories(results, resonance, title)
-    units = display_units_of(next(iter(results.values())))
-    under = None if branches is None else with_units(branches, units)
-    return draw_ramps(results, with_units(averaged.stationary_curve(*system), units), under, title)
-
-
 class Couple(Only, OfSchedule, OfController, Stepped, DriveCommand, OfBoth):
     """The weak drive: structure and motor coupled, the voltage up and down (Figure 2)."""
 
@@ -68,20 +51,18 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
     def __call__(self) -> None:
         if self.ssp:
             structure, motor, question = self.read_question()
-            job = self.make_job(
-                [*self.structures_by_state(structure).values()][-1], motor, question
-            )
-            print(self.write_ssp_package(self.ssp, motor, job))
+            print(self.write_ssp_package(self.ssp, structure, motor, question))
         else:
             super().__call__()
 
     def make_job(self, structure: Structure, motor: Drive, question: Keywords) -> CoupleJob:
         from ..weak_drive.couple import make_couple_job, scheme_from_arguments
 
-        control, step = question["control"], question["step"]
-        scheme = scheme_from_arguments(structure, step, question["tolerance"], control is not None)
-        more = {"control": control, "hold": question["hold"]}
-        return make_couple_job(structure, motor, question["voltage"], scheme, **more)
+        control, voltage, step, tolerance, hold = (
+            question[name] for name in ("control", "voltage", "step", "tolerance", "hold")
+        )
+        scheme = scheme_from_arguments(structure, step, tolerance, control is not None)
+        return make_couple_job(structure, motor, voltage, scheme, control=control, hold=hold)
 
     def compute(self, states: States, others: Any, question: Keywords, files: Files) -> Runs:
         from ..fmu import make_fmu_finder
@@ -94,9 +75,8 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
             for state, one in states.items()
         ]
         running = self.running_keywords()
-        compute_into_folder(
-            jobs, self.output, RunOptions.from_keywords(running), make_fmu_finder(running)
-        )
+        options = RunOptions.from_keywords(running)
+        compute_into_folder(jobs, self.output, options, make_fmu_finder(running))
         self.job, self.stationary = jobs[0], None
         if self.branches:
             delaminated = next(iter(states.values())).as_delaminated()
@@ -127,7 +107,19 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         yield from printing.table_lines(shown, names)
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
-        return draw_couple(self.picture_title(results), results, self.job, self.stationary)
+        from ..show.passage import draw_passage_histories
+        from ..show.weak_drive import draw_ramps
+        from ..weak_drive import averaged, own_resonance
+        from ..weak_drive.schedule import Ramp
+
+        title, system = self.picture_title(results), (self.job.structure, self.job.drive)
+        if self.job.control or not isinstance(self.job.schedule, Ramp):
+            resonance = own_resonance.dividing_speed(*system) * self.job.structure.omega
+            return draw_passage_histories(results, resonance, title)
+        units = display_units_of(next(iter(results.values())))
+        theory = with_units(averaged.stationary_curve(*system), units)
+        branches = None if self.stationary is None else with_units(self.stationary, units)
+        return draw_ramps(results, theory, branches, title)
 
     def write_further_files(
         self, files: ResultFiles, question: Keywords, shown: Runs, results: Runs
@@ -137,17 +129,17 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
             draw = partial(orchestrate.plot, *shown.values(), part="jumps", title=title)
             files.write_pictures(draw, "jumps")
 
-    def write_ssp_package(self, path: Path, motor: Drive, job: CoupleJob) -> Path:
+    def write_ssp_package(
+        self, path: Path, structure: Structure, motor: Drive, question: Keywords
+    ) -> Path:
         from ..fmu import find_or_export
 
-        own = fmus_by_model(self.fmu)
-        fmus = [
-            find_or_export(name, "fmi2", self.build_folder, own.get(name)).path
-            for name in job.models
-        ]
-        start = {"voltage": job.schedule.voltage(0.0), "speed_start": job.speed_start}
-        more: Any = {**start, "fmus": fmus, "version": self.ssp_version}
-        return orchestrate.write_ssp(path, job.structure, motor, **more)
+        *_, chosen = self.structures_by_state(structure).values()
+        job, own = self.make_job(chosen, motor, question), fmus_by_model(self.fmu)
+        fmus = [find_or_export(n, "fmi2", self.build_folder, own.get(n)).path for n in job.models]
+        start: Any = {"voltage": job.schedule.voltage(0.0), "speed_start": job.speed_start}
+        version = self.ssp_version
+        return orchestrate.write_ssp(path, chosen, motor, fmus=fmus, version=version, **start)
 
 
 class Capture(Only, OfRamp, Over, Stepped, OfController, DriveCommand, OfBoth):
@@ -166,13 +158,6 @@ The motor is switched on at once and followed until its speed has settled."""
         yield from printing.table_lines(data.assign(half=half), "border+half:.5f, above_fold")
         yield from printing.hint_lines(["above_fold: yes"] * bool(data.above_fold.any()))
         yield from printing.describe(data, "passes decision")
-
-
-def first_stored_interval(data: xr.Dataset) -> xr.Dataset:
-    """Return the samples of the first jump where a run is stored around several."""
-    gaps = np.diff(data.time.values)
-    breaks = np.flatnonzero(gaps > 1.5 * np.median(gaps))
-    return data.isel(time=slice(0, int(breaks[0]) + 1)) if breaks.size else data
 
 
 class Passage(Only, OfSchedule, OfController, Stepped, DriveCommand, OfBoth):
@@ -199,9 +184,13 @@ class Passage(Only, OfSchedule, OfController, Stepped, DriveCommand, OfBoth):
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         from ..show.passage import draw_passage_with_spectra
 
-        shown = {state: first_stored_interval(data) for state, data in results.items()}
-        spectra = {"revolutions": self.revolutions, "mass": self.mass}
-        falls = {state: orchestrate.waterfall(data, **spectra) for state, data in shown.items()}
+        shown, falls = {}, {}
+        for state, data in results.items():
+            gaps = np.diff(data.time.values)  # a run may be stored around several jumps
+            breaks = [*np.flatnonzero(gaps > 1.5 * np.median(gaps)), len(gaps)]
+            shown[state] = data.isel(time=slice(0, int(breaks[0]) + 1))
+            how = {"revolutions": self.revolutions, "mass": self.mass}
+            falls[state] = orchestrate.waterfall(shown[state], **how)
         return draw_passage_with_spectra(shown, falls, self.picture_title(results))
 
     def all_summary_lines(self, results: Runs) -> Iterator[str]:
@@ -229,12 +218,8 @@ class JumpVoltages(OfRamp, Over, Stepped, DriveCommand, Stored, OfBoth):
         structure, motor, question = super().read_question()
         unit = motor.volts(structure) * structure.omega
         rates = [rate * unit for rate in grammar.parse_rates("--rate", self.rate)]
-        more = {
-            "rates": rates,
-            "back": not self.one_way,
-            **self.options_in_seconds(structure, "settle"),
-        }
-        return structure, motor, question | more
+        question |= {"rates": rates, "back": not self.one_way}
+        return structure, motor, question | self.options_in_seconds(structure, "settle")
 
     def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         # a direction in which no ramp went has not been decided
@@ -287,7 +272,9 @@ class DriveBranch(DriveCommand, Stored, OfBoth):
   {program} drive-branch                              quick, bonded and delaminated
   {program} drive-branch --drive beam --speed 92:110
 Branches go round their folds."""
-    summary = staticmethod(drive_branch_lines)
+
+    def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
+        return drive_branch_lines(data)
 
 
 # -- any drive ------------------------------------------------------------------------------------
@@ -302,9 +289,8 @@ def parse_variable_values(option: str, texts: Sequence[str]) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for name, text in grammar.parse_pairs(option, texts, PAIR).items():
         try:
-            found[name] = (
-                text == "true" if text in ("true", "false") else grammar.parse_plain_float(text)
-            )
+            flag = {"true": True, "false": False}.get(text)
+            found[name] = grammar.parse_plain_float(text) if flag is None else flag
         except ValueError:
             if option != "--input":
                 text = f"{option} {name}={text}: expected a number, true or false"

@@ -32,7 +32,7 @@ def interrupt(*_, **__):
 PLACES = {
     "orchestrate.response.sweep.SweepJob.work": BEGINS_ANEW,
     "orchestrate.running.store.DiskStore.finish": INTERRUPTED,
-    "orchestrate.cli.output.ResultFiles.write_and_print_paths": (
+    "orchestrate.cli.output.ResultFiles.write_tables": (
         f"interrupted: the result is stored; {RESUME}"
     ),
 }

@@ -124,7 +124,7 @@ def test_a_signal_in_a_callback_ends_the_command():
 
 
 def test_an_interrupt_before_the_command_has_begun(monkeypatch, capfd):
-    for place in ("make_app", "set_up_logging"):
+    for place in ("make_app", "safe_outputs"):
         with monkeypatch.context() as patch:
             patch.setattr(cli, place, Mock(side_effect=KeyboardInterrupt))
             assert cli.main(["sweep", "--eta", "1"]) == 130
