@@ -93,14 +93,12 @@ def simulate_from_state(data: xr.Dataset, state: xr.DataArray, periods: int) -> 
     return units.with_units(motion, units.display_units_of(data))
 
 
-def attractor_table_lines(data: xr.Dataset, over: str = "") -> Iterator[str]:
+def attractor_table_lines(data: xr.Dataset) -> Iterator[str]:
     """Yield a table of attractors: share, period, impacts, how decided, largest gap, a state."""
-    rows = data.stack(row=(*filter(None, [over]), "attractor"), create_index=False)
-    rows = rows.isel(row=rows.multiplicity.notnull().values).transpose("row", ...)
-    names = "attractor, share, multiplicity, impacts_per_period, decided_by, xi_rel_max"
     state = f"state at phase 0{' (SI)' * (not units.shows_lengths_as_ratios(data))}"
-    rows, names = rows.rename(state=state), f"{over}, {names}".removeprefix(", ")
-    yield from printing.table_lines(rows, f"{names}, {state}:.6g", ".4g")
+    names = "share, multiplicity, impacts_per_period, decided_by, xi_rel_max"
+    shown, names = data.rename(state=state), f"{names}, {state}:.6g"
+    yield from printing.table_lines(shown, names, ".4g", needs="multiplicity")
 
 
 class Attractors(OfStructure, OfBox, Over, FunctionCommand, Stored, Results):
@@ -124,7 +122,7 @@ alone may miss one whose basin is small."""
         yield f"{data.sizes['start']} random starts at each value; attractors found:"
         yield from printing.count_lines(data, data.number)
         if data.sizes[name] <= 5:  # values up to which every attractor is printed
-            yield from attractor_table_lines(data, name)
+            yield from attractor_table_lines(data)
             yield "few starts overlook small basins: basin, or a range of values, finds them"
             return
         shares = data.share.where(data.multiplicity.notnull())
@@ -144,10 +142,8 @@ alone may miss one whose basin is small."""
         at = data.isel({name: 0})
         at = at.isel(attractor=at.multiplicity.notnull().values)
         periods = at.multiplicity.astype(int).where(at.multiplicity > 0, 60)  # irregular: 60
-        pairs = zip(at.state, periods.values, strict=True)
-        return draw_phase_curves(
-            at, [simulate_from_state(at, state, int(count)) for state, count in pairs]
-        )
+        pairs = zip(at.state, periods.values.tolist(), strict=True)
+        return draw_phase_curves(at, [simulate_from_state(at, *pair) for pair in pairs])
 
 
 class Basin(OfStructure, OfBox, FunctionCommand, Stored, Results):
@@ -165,32 +161,24 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
     def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         labels = data.attractor_of.values
         started, overlapping = int((labels >= 0).sum()), int((labels < 0).sum())
-        axes = [data[name] for name in data.attractor_of.dims]
-        ends = [(axis.min().item(), axis.max().item(), str(axis.attrs["units"])) for axis in axes]
-        sides = [
-            f"{a.name} {units.format_quantity_range(data, *end)}"
-            for a, end in zip(axes, ends, strict=True)
-        ]
+        sides = []
+        for axis in (data[name] for name in data.attractor_of.dims):
+            ends = axis.min().item(), axis.max().item(), str(axis.attrs["units"])
+            sides.append(f"{axis.name} {units.format_quantity_range(data, *ends)}")
         yield f"{data.sizes['attractor']} found, of {started} starts in {', '.join(sides)}"
         yield from attractor_table_lines(data)
         if overlapping:
             yield f"{overlapping} starts left out: there the masses would overlap"
         if data.sizes["attractor"] > 1 and min(labels.shape) >= 32:  # along a side, for entropies
             mixed = orchestrate.basin_entropy(data)
-            yield (
-                f"basin entropy {float(mixed.basin_entropy):.3g}, at boundaries "
-                f"{float(mixed.boundary_basin_entropy):.3g} (above 0.69: fractal)"
-            )
-            exponent, error = mixed.uncertainty_exponent, mixed.uncertainty_exponent_error
+            inside, at_boundaries = float(mixed.basin_entropy), float(mixed.boundary_basin_entropy)
+            text = f"basin entropy {inside:.3g}, at boundaries {at_boundaries:.3g}"
+            yield f"{text} (above 0.69: fractal)"
+            exponent = float(mixed.uncertainty_exponent)
             if math.isfinite(exponent):
-                words = printing.format_with_error(float(exponent), float(error), ".3g")
+                error = float(mixed.uncertainty_exponent_error)
+                words = printing.format_with_error(exponent, error, ".3g")
                 yield f"uncertainty exponent {words} (1: smooth boundaries)"
-
-
-def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:
-    from ..show.labels import title_from_attributes
-
-    return f"{flag_word(orbit.stability)} orbit, {title_from_attributes(motion)}"
 
 
 class Orbit(OfStructure, OfBox, FunctionCommand, Stored, Results):
@@ -205,14 +193,16 @@ class Orbit(OfStructure, OfBox, FunctionCommand, Stored, Results):
 Floquet multipliers: of a stable orbit all lie inside the unit circle."""
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
+        from ..show.labels import title_from_attributes
+
         data = results[""]
         motion = simulate_from_state(data, data.state.isel(sample=0), int(data.attrs["period"]))
-        return orchestrate.plot(motion, title=orbit_title(data, motion))
+        title = f"{flag_word(data.stability)} orbit, {title_from_attributes(motion)}"
+        return orchestrate.plot(motion, title=title)
 
     def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
         parts = data.multipliers.transpose("multiplier", "part").values
-        size = max(abs(complex(*pair)) for pair in parts)
-        word = flag_word(data.stability)
+        size, word = max(abs(complex(*pair)) for pair in parts), flag_word(data.stability)
         yield f"{word}: the largest multiplier has the absolute value {size:.6f}"
         yield from printing.hint_lines([f"stability: {word}"])
         yield "multipliers " + ", ".join(f"{real:.6f}{other:+.6f}i" for real, other in parts)
@@ -270,8 +260,8 @@ class Branch(OfStored, OfBox, FunctionCommand, Stored, Results):
 The excitation says where a first orbit is looked for; without it that is the lower limit."""
 
     def read_question(self) -> tuple[Structure, Keywords]:
-        limits = self.require("limits", "; expected FIRST:LAST")
-        over, limits = parse_continued(self.over, limits)
+        text = self.require("limits", "; expected FIRST:LAST")
+        over, limits = parse_continued(self.over, text)
         structure, keywords = self.read_structure_and_question()
         if over == "frequency" and self.g is not None:
             self.replace_level_by_amplitude(structure, limits[0])
@@ -289,12 +279,11 @@ The excitation says where a first orbit is looked for; without it that is the lo
 
     def replace_level_by_amplitude(self, structure: Structure, first: float) -> None:
         """Replace ``--g`` by the amplitude that it is at the start of a branch over frequency."""
-        frequency = first
         if self.given_frequency_option() is not None:
-            frequency = self.read_excitation(structure, one_frequency=True)["frequency"]
+            first = self.read_excitation(structure, one_frequency=True)["frequency"]
         level = grammar.parse_positive_number("--g", self.g) * GRAVITY
-        amplitude = float(f"{level / frequency**2:.6g}")
-        text = f"--g {self.g}: is --amplitude {amplitude:g} at {frequency / TURN:.5g} Hz"
+        amplitude = float(f"{level / first**2:.6g}")
+        text = f"--g {self.g}: is --amplitude {amplitude:g} at {first / TURN:.5g} Hz"
         if structure.has_scale:
             raise InputError(f"{text}; a branch over the frequency has one amplitude: expected it")
         print(f"{text}, constant along the branch; its bifurcations are those of any amplitude")
@@ -308,11 +297,10 @@ The excitation says where a first orbit is looked for; without it that is the lo
             given = {} if amplitude is None else {"amplitude": amplitude}
             return given | self.given_pushes()
         excitation = self.read_excitation(structure, one_frequency=True)
-        needed = {"eta": "eta", "frequency": "frequency", "amplitude": "frequency"}.get(over)
+        both = "frequency", "a frequency and --amplitude"
+        needs = {"eta": ("eta", "--eta without an amplitude"), "frequency": both, "amplitude": both}
+        needed, expected = needs.get(over, ("", ""))
         if needed and needed not in excitation:
-            expected = (
-                "--eta without an amplitude" if over == "eta" else "a frequency and --amplitude"
-            )
             raise InputError(f"--over {over}: expected {expected} with it")
         return excitation
 

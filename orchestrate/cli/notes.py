@@ -82,17 +82,6 @@ def box_frequencies_and_amplitudes(structure: Structure, question: Keywords) -> 
     return box["frequency"], box["amplitude"]
 
 
-def warn_of_unusual_level(structure: Structure, question: Keywords) -> None:
-    """Warn once if the box's amplitude or acceleration is beyond what shakers have."""
-    frequency, amplitude = box_frequencies_and_amplitudes(structure, question)
-    travel, level = amplitude.max(), (amplitude * frequency**2).max() / GRAVITY
-    if travel > SETTINGS.travel or level > SETTINGS.violent:
-        warn(
-            f"the box moves by up to {travel:.3g} m and {level:.3g} g: beyond what shakers do; is "
-            "the amplitude in m (1 mm is 1e-3, or 1mm), the level in g?"
-        )
-
-
 def warn_of_unusual_voltage(text: str, voltages: tuple[float, ...], volts: float) -> None:
     """Warn if voltages are far from the one that turns the motor at omega, ``volts``."""
     ratios = [abs(voltage) / volts for voltage in voltages]
@@ -115,7 +104,13 @@ def print_and_warn_of_frequencies(arguments: Any, structure: Structure, question
     if not math.isclose(structure.omega, 1.0):
         warn_of_other_unit(arguments, structure, values.min(), values.max())
         if {"amplitude", "level"} & question.keys():
-            warn_of_unusual_level(structure, question)
+            frequency, amplitude = box_frequencies_and_amplitudes(structure, question)
+            travel, level = amplitude.max(), (amplitude * frequency**2).max() / GRAVITY
+            if travel > SETTINGS.travel or level > SETTINGS.violent:
+                warn(
+                    f"the box moves by up to {travel:.3g} m and {level:.3g} g: beyond what shakers "
+                    "do; is the amplitude in m (1 mm is 1e-3, or 1mm), the level in g?"
+                )
     low, high = values.min() / structure.omega, values.max() / structure.omega
     if high > SETTINGS.far or low < 1.0 / SETTINGS.far:
         ends = " to ".join(f"{ratio:.3g}" for ratio in dict.fromkeys((low, high)))
@@ -137,11 +132,8 @@ def warn_of_other_unit(arguments: Any, structure: Structure, first: float, last:
     for name, (factor, unit, other) in OTHER_UNIT.items() if not fits_structure(1.0) else ():
         text = getattr(arguments, name, None)
         if text and fits_structure(factor):
-            numbers = " and ".join(f"{each:.4g}" for each in hertz) + " Hz"
-            warn(
-                f"--{name} {text}: these are {unit}, and the structure's own frequencies are "
-                f"{numbers}; is {other} meant?"
-            )
+            own = f"own frequencies are {' and '.join(f'{each:.4g}' for each in hertz)} Hz"
+            warn(f"--{name} {text}: these are {unit}, and the structure's {own}; is {other} meant?")
 
 
 def clearance_notes(structure: Structure, question: Keywords, shown: xr.Dataset) -> Iterator[str]:
@@ -156,17 +148,13 @@ def clearance_notes(structure: Structure, question: Keywords, shown: xr.Dataset)
     if ratio <= 1.0:
         return
     if ratio > SETTINGS.unfelt:
-        warn(
-            f"clearance = {structure.clearance:g} m: {ratio:.3g} times what this level moves; is "
-            "it in m (20 um is 2e-5)?"
-        )
+        times = f"{ratio:.3g} times what this level moves"
+        warn(f"clearance = {structure.clearance:g} m: {times}; is it in m (20 um is 2e-5)?")
     pressed = structure.clearance < 0.0
     kind, event = ("pressed together", "opens") if pressed else ("open", "touches")
     length = format_quantity(shown, abs(structure.clearance), "m")
-    yield (
-        f"{kind} by {length}, it first {event} at {ratio:.4g} times this level: from rest the "
-        + ("response is linear")
-    )
+    first = f"{kind} by {length}, it first {event} at {ratio:.4g} times this level"
+    yield f"{first}: from rest the response is linear"
 
 
 def smallest_threshold_over_level(structure: Structure, question: Keywords) -> float:

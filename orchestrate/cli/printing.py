@@ -128,18 +128,27 @@ def impact_lines(data: xr.Dataset) -> Iterator[str]:
 
 
 def table_lines(
-    data: xr.Dataset, names: str, form: str = ".6g", prefix: str = "", most: int | None = None
+    data: xr.Dataset,
+    names: str,
+    form: str = ".6g",
+    *,
+    prefix: str = "",
+    most: int | None = None,
+    needs: str = "",
 ) -> Iterator[str]:
     """Yield the table of some variables: a row for each value of all dimensions of the first one.
 
     The coordinates of these dimensions come first. Numbers are in display units; a variable may
-    have an error and a format of its own: ``"jumps+standard_error:.5f, decided"``.
+    have an error and a format of its own: ``"jumps+standard_error:.5f, decided"``. Rows without a
+    value of the variable ``needs`` are left out, and those after ``most`` counted.
     """
     columns = COLUMN.findall(names)
     dims = [*map(str, data[prefix + columns[0][0]].dims)]
     columns = [*((dim, "", "") for dim in dims if dim in data.coords), *columns]
     rows = data.stack(line=dims, create_index=False) if dims else data.expand_dims("line")
     rows = rows.transpose("line", ...)
+    if needs:
+        rows = rows.isel(line=rows[needs].notnull().values)
     cells: dict[str, list[str]] = {}
     for name, error, own in columns:
         title, texts = column_of(rows, name, prefix, error, own or form)
