@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -110,13 +110,18 @@ what it gives:
         log.info("reading %s", ", ".join(path.name for path in self.records))
         records, refused = self.read_sweeps_and_refusals()
         names = {one: self.file_stem(one, guess) for one in records}
-        verdicts = self.compute_verdicts(records, names, guess, others) if records else {}
-        for sweep, verdict in verdicts.items():
+        beams = {names[sweep]: [record, *others] for sweep, record in records.items()}
+        faces = ("acceleration1", "acceleration2")
+        factors = dict(zip(faces, self.participation or (), strict=False)) or None
+        how: Any = {"participation": factors, **self.running_keywords(self.output)}
+        verdicts = orchestrate.detect_all(beams, guess, **how) if beams else {}
+        for sweep, record in records.items():
+            verdict = self.with_origin(sweep, record, verdicts[names[sweep]])
             shown = with_units(verdict, self.record_display_units())
             print(*self.verdict_lines(sweep, shown), sep="\n")
             log.info("%s: signs, pictures and page", sweep.path.name)
             same = [one for key, one in records.items() if key.path == sweep.path and key != sweep]
-            signs = orchestrate.signs(records[sweep], other=[*others, *same], structure=guess)
+            signs = orchestrate.signs(record, other=[*others, *same], structure=guess)
             self.write_and_print_files(names[sweep], {"": verdict, "_signs": signs})
         if refused:
             count = len({one.path for one in records}) + len(refused)
@@ -158,48 +163,26 @@ what it gives:
             raise InputError(f"{path}: no acceleration of a face in {taken}; {text}")
         return record
 
-    def compute_verdicts(
-        self,
-        records: dict[Sweep, xr.Dataset],
-        names: dict[Sweep, str],
-        guess: Structure | None,
-        others: Sequence[xr.Dataset],
-    ) -> dict[Sweep, xr.Dataset]:
-        faces = ("acceleration1", "acceleration2")
-        factors = dict(zip(faces, self.participation or (), strict=False)) or None
-        of_beams = {names[sweep]: [record, *others] for sweep, record in records.items()}
-        running = self.running_keywords(self.output)
-        verdicts = orchestrate.detect_all(of_beams, guess, participation=factors, **running)
-        described = {}
-        for sweep, name in names.items():
-            verdict = verdicts[name]
-            words = self.origin_attributes(sweep.path, records[sweep])
-            label = sweep._replace(path=Path(sweep.path.name))
-            words["title"] = f"Verdict on {label}: {verdict.verdict.item()}"
-            described[sweep] = verdict.assign_attrs(words)
-            if not words.items() <= verdict.attrs.items():
-                files = ResultFiles.from_options(self, name, fresh=True)
-                output.write_unstored_netcdf(files, described[sweep])
-        return described
-
-    def origin_attributes(self, path: Path, record: xr.Dataset) -> dict[str, str]:
+    def with_origin(self, sweep: Sweep, record: xr.Dataset, verdict: xr.Dataset) -> xr.Dataset:
+        """Return a verdict with what it is on: record, guess and command."""
+        label = sweep._replace(path=Path(sweep.path.name))
         told = ("columns", "unit", "converted", "time_base")
         words = {
             **{f"record_{name}": record.attrs.get(name) for name in told},
-            **{"record_file": path.name, "record_sha256": file_checksum(path)},
+            **{"record_file": str(label.path), "record_sha256": file_checksum(sweep.path)},
             "record_unit_note": unit_override_note(record.attrs),
             "command": self.command_line,
             "sensors": record.attrs.get("sensors"),
             "guess_file": str(self.structure or ""),
+            "title": f"Verdict on {label}: {verdict.verdict.item()}",
         }
-        return {name: text for name, text in words.items() if text}
+        return verdict.assign_attrs({name: text for name, text in words.items() if text})
 
     def write_and_print_files(self, stem: str, answers: dict[str, xr.Dataset]) -> None:
         units = self.record_display_units()
         for ending, answer in answers.items():
             files = ResultFiles.from_options(self, f"{stem}{ending}", fresh=True)
-            if ending:  # the verdict is stored already
-                output.write_unstored_netcdf(files, answer)
+            output.write_unstored_netcdf(files, answer)
             shown = with_units(answer, units)
             files.write_tables(shown)
             files.write_pictures(partial(orchestrate.plot, shown))

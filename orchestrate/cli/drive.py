@@ -33,6 +33,7 @@ CONTROLS = {  # options of controllers, with their settings
     "speed_control": ("gain", "reset_time", "speed_rise"),
     "speed_gradient": ("filter_time", "low"),
 }
+POSITIVE: Any = {"read": grammar.parse_positive_number}
 DATASHEET = ("rated_voltage", "no_load_rpm", "stall_torque")
 
 
@@ -58,14 +59,10 @@ class OfMotor(Options):
         "of the motor, V: by its datasheet, all three in place of motor_constant and "
         "armature_resistance",
         value="V",
-        read=grammar.parse_positive_number,
+        **POSITIVE,
     )
-    no_load_rpm: float | None = option(
-        "its speed without load", value="RPM", read=grammar.parse_positive_number
-    )
-    stall_torque: float | None = option(
-        "its torque at rest, N m", value="N.M", read=grammar.parse_positive_number
-    )
+    no_load_rpm: float | None = option("its speed without load", value="RPM", **POSITIVE)
+    stall_torque: float | None = option("its torque at rest, N m", value="N.M", **POSITIVE)
 
     def read_structure_and_drive(self) -> tuple[Structure, Drive]:
         drive = Drive.from_file(self.drive)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -18,6 +17,7 @@ from ..units import Units
 from . import grammar, output, printing
 from .answer import Files, FunctionCommand, Runs, States
 from .command import NONE, Command, Keywords, Options, default_by_argument, option, option_names
+from .notes import warn
 from .options import Beside, OfSensors, OfStructure
 from .output import Reading, ResultFiles, question_digest, unit_override_note
 
@@ -109,10 +109,8 @@ class OfExcitation(Options):
         given = self.given_options(OfExcitation)
         chosen = [name for name in EXCITATIONS if name in given]
         if len(chosen) != 1:
-            words = option_names(chosen, " and ") or "nothing"
-            raise InputError(
-                f"excitation: {words} given; expected one of {option_names(EXCITATIONS)}"
-            )
+            words, expected = option_names(chosen, " and ") or "nothing", option_names(EXCITATIONS)
+            raise InputError(f"excitation: {words} given; expected one of {expected}")
         takes = {name: default_by_argument(kind.calls) for name, kind in EXCITATIONS.items()}
         leveled = [name for name, kind in EXCITATIONS.items() if kind.level]
         owners = {**dict.fromkeys(LEVELS, leveled), "column": ["record"]}
@@ -170,7 +168,7 @@ class Shake(
         excitation = self.read_excitation()
         if (self.sample_rate or math.inf) < (needed := excitation.usual_rate) / 10.0:
             text = f"--sample-rate {self.sample_rate:g}: too few samples to show the excitation"
-            warnings.warn(f"{text}; the default is {needed:g}", stacklevel=2)
+            warn(f"{text}; the default is {needed:g}")
         return structure, {
             "excitation": excitation,
             **self.function_keywords(),
@@ -183,9 +181,9 @@ class Shake(
         if (sensor := self.read_sensor()) is None:
             return
         excitation = None if self.shaker else question["excitation"]
+        # one file, one name
+        own = "" if self.store else question_digest(sensor.label, sensor.rate)
         for state, data in results.items():
-            # one file, one name
-            own = "" if self.store else question_digest(sensor.label, sensor.rate)
             path = files.path_with_suffixes(state, "sensors", own)
             record = orchestrate.measure(data, sensor, excitation=excitation)
             for ending in dict.fromkeys(("nc", *(one for one in files.formats if one != "xlsx"))):
@@ -272,13 +270,14 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Funct
     def __call__(self) -> None:
         names = output.parse_known_words("--show", self.show, tuple(ANALYSES))
         ResultFiles.from_options(self, "", fresh=True)  # before records are read
-        settings = self.settings_by_analysis(names)
+        takes = {name: default_by_argument(row[0]) for name, row in ANALYSES.items()}
+        chosen = self.given_options(Settings)
+        owners = {one: [name for name in takes if one in takes[name]] for one in chosen}
+        self.refuse_without(owners, names, "--show ")
         self.paths = self.paths_by_label()
         whole = {label: self.read_record_file(path) for label, path in self.paths.items()}
         self.check_sensor_use(whole)
-        self.records = {
-            label: self.measure_and_cut(one, self.paths[label]) for label, one in whole.items()
-        }
+        self.records = {label: self.measure_and_cut(label, one) for label, one in whole.items()}
         for label, record in self.records.items():
             if note := unit_override_note(record.attrs):
                 print(f"{self.paths[label]}: {note}")
@@ -287,7 +286,8 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Funct
         reading += self.given_options(Reading).items()
         for self.analysis in names:
             self.calls, self.named = ANALYSES[self.analysis][0], f"analyse_{self.analysis}"
-            self.compute_print_and_write([read, reading], settings[self.analysis])
+            question = {one: chosen[one] for one in chosen if one in takes[self.analysis]}
+            self.compute_print_and_write([read, reading], question)
 
     def source_file_stems(self) -> list[str]:
         return [self.record.stem]
@@ -324,18 +324,10 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Funct
             text = "of simulated motions; expected a result of shake, or a record without it"
             raise InputError(f"--sensor {self.sensor}: {text}")
         if self.sensor is None and 0 < len(simulated) < len(records):
-            warnings.warn(
+            warn(
                 f"{', '.join(simulated)}: accelerations between impacts, compared with a record "
-                "whose sensors feel the impulses too; --sensor HZ:RATE compares like with like",
-                stacklevel=2,
+                "whose sensors feel the impulses too; --sensor HZ:RATE compares like with like"
             )
-
-    def settings_by_analysis(self, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
-        chosen = self.given_options(Settings)
-        takes = {name: default_by_argument(row[0]) for name, row in ANALYSES.items()}
-        owners = {one: [name for name in takes if one in takes[name]] for one in chosen}
-        self.refuse_without(owners, names, "--show ")
-        return {name: {o: chosen[o] for o in chosen if o in takes[name]} for name in names}
 
     def paths_by_label(self) -> dict[str, Path]:
         """Return a dict from label to record file, from FILE and ``--beside``; FILE comes first."""
@@ -346,24 +338,23 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Funct
             raise InputError(f"--beside {label}={beside[label]}: {text}")
         return {label: self.record, **{name: Path(path) for name, path in beside.items()}}
 
-    def measure_and_cut(self, record: xr.Dataset, path: Path) -> xr.Dataset:
+    def measure_and_cut(self, label: str, record: xr.Dataset) -> xr.Dataset:
         """Apply ``--sensor`` to a simulated record; cut it from ``--from`` to ``--to``."""
         if (sensor := self.read_sensor()) is not None and "impulse" in record:
             record = orchestrate.measure(record, sensor)
-        begin, end = self.begin, self.to
-        if "time" not in record.coords or begin is end is None:
+        if "time" not in record.coords or self.begin is self.to is None:
             return record
-        part = record.sel(time=slice(begin, end))
+        part = record.sel(time=slice(self.begin, self.to))
         if not part.sizes["time"]:
             ends = f"{float(record.time[0]):.6g} to {float(record.time[-1]):.6g} s"
-            raise InputError(f"{path}: nothing between --from and --to; it has {ends}")
+            text = f"nothing between --from and --to; it has {ends}"
+            raise InputError(f"{self.paths[label]}: {text}")
         return part
 
     def read_record_file(self, path: Path) -> xr.Dataset:
         if path.suffix.lower() == ".nc":
-            stored = grammar.load_earlier_result(
-                "FILE" if path == self.record else "--beside", path
-            )
+            flag = "FILE" if path == self.record else "--beside"
+            stored = grammar.load_earlier_result(flag, path)
             units = {stored[name].attrs.get("units", "m/s2") for name in MASSES if name in stored}
             return stored if units <= {"m/s2"} else orchestrate.read_record(path)
         reading = self.given_options(Reading)
@@ -445,13 +436,11 @@ they are, the last line says what is missing."""
         found = orchestrate.channels(self.record, **reading, output=self.output)
         names = "column, role, known, quantity, unit, rms:.4g"
         print(*printing.table_lines(found, names), sep="\n")
-        if proposed := found.role.values[found.known.values == BY_ORDER].tolist():
-            columns = found.column.values[found.known.values == BY_ORDER].tolist()
-            said = [f'"{one}" as {role}' for one, role in zip(columns, proposed, strict=True)]
-            warnings.warn(
-                f"{self.record}: a proposal by the columns' order: {', '.join(said)}; see that it "
-                "is right, and say it by --channels, in full or as a file (--output)",
-                stacklevel=2,
+        proposed = found.role[(found.known == BY_ORDER).values]
+        if said := ", ".join(f'"{one.column.item()}" as {one.item()}' for one in proposed):
+            warn(
+                f"{self.record}: a proposal by the columns' order: {said}; see that it is right, "
+                "and say it by --channels, in full or as a file (--output)"
             )
         if rate := found.attrs["sample_rate"]:
             print(f"{rate:.6g} samples a second")
