@@ -25,6 +25,7 @@ module                idea
 
 from __future__ import annotations
 
+import itertools
 import logging
 import re
 import shlex
@@ -89,8 +90,8 @@ def program_name() -> str:
     return "vibroimpact" if called.startswith("vibroimpact") else "python -m orchestrate"
 
 
-def make_app(words: Sequence[str]) -> cyclopts.App:
-    """Return all commands as cyclopts knows them, with options where a word of the line is one."""
+def make_app(chosen: str) -> cyclopts.App:
+    """Return the program as cyclopts knows it: one command, or the list of all without options."""
     app = cyclopts.App(
         name=program_name(),
         help="Simulate and analyse a vibro-impacting structure through its FMUs: its responses, "
@@ -100,10 +101,11 @@ def make_app(words: Sequence[str]) -> cyclopts.App:
         print_error=False,
         exit_on_error=False,
     )
+    if chosen in COMMANDS:
+        app.command(COMMANDS[chosen].cyclopts_app())
+        return app
     for number, (name, kind) in enumerate(COMMANDS.items()):
-        own = kind.cyclopts_app() if name in words else cyclopts.App(name=name, help=kind.__doc__)
-        own.sort_key = number
-        app.command(own)
+        app.command(cyclopts.App(name=name, help=kind.__doc__, sort_key=number))
     return app
 
 
@@ -136,15 +138,15 @@ def parse_arguments(arguments: Sequence[str]) -> Command | None:
     Raise ``InputError`` for a mistake, with the command or option that is probably meant.
     """
     words = join_negative_values(arguments)
-    while words and words[0] == "--debug":
-        words.append(words.pop(0))
+    before = [*itertools.takewhile(lambda word: word in ("--debug", "--help"), words)]
+    words = [*words[len(before) :], *before]
     name = words[0] if words else "COMMAND is missing"
     help_is_at = f"({program_name()} --help lists them)"
     if name not in COMMANDS and not name.startswith("-"):
         meant = did_you_mean(closest_name(name, COMMANDS))
         raise InputError(f"{name}: no command{meant} {help_is_at}")
     try:
-        call, bound, _ = make_app(words).parse_args(words)
+        call, bound, _ = make_app(name).parse_args(words)
     except CycloptsError as error:
         if name not in COMMANDS:
             raise InputError(f"{name}: no option before a COMMAND {help_is_at}") from None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import hashlib
 import re
 
 import netCDF4
@@ -22,107 +21,96 @@ from ...exports import BUILD
 from ...sparing import ordinary
 
 TURN, G = 2.0 * np.pi, 9.80665
-BEAM = ("--structure", "beam")
-BOX = (*BEAM, "--hz", "12", "--g", "0.02")
+BEAM = "--structure beam"
+BOX = f"{BEAM} --hz 12 --g 0.02"
 AT = {"frequency": 12.0 * TURN, "amplitude": 0.02 * G / (12.0 * TURN) ** 2}
-SHORT, LONGER = ["--transient", "10", "--samples", "4"], ["--transient", "60", "--samples", "16"]
-SWEPT = (*BEAM, "--hz", "12:13:1", "--g", "0.02", "--direction", "up")
-CONNECTED = ("box_acceleration=box_acceleration", "box_force=box_force")
-DRIVEN = ("--step", "0.2", "--jobs", "1")
-ONE_WAY = ("--rate", "4e-4", "--settle", "9", "--one-way", *DRIVEN)
+SHORT, LONGER = "--transient 10 --samples 4", "--transient 60 --samples 16"
+LINKS = {name: name for name in ("box_acceleration", "box_force")}
+CONNECTED = "--connect box_acceleration=box_acceleration box_force=box_force"
+DRIVEN = "--step 0.2 --jobs 1"
+ONE_WAY = f"--rate 4e-4 --settle 9 --one-way {DRIVEN}"
+SHOCK = orchestrate.Shock(peak=2 * G, length=0.01, shape="sawtooth")
 ASKED = {  # command: options, a unit and what is printed in it, what is printed anyhow, keywords
-    "simulate": ((*BOX, "--periods", "3"), "mm", r"[\d.]+ mm\n", (), {**AT, "periods": 3}),
+    "simulate": (f"{BOX} --periods 3", "mm", r"[\d.]+ mm\n", (), {**AT, "periods": 3}),
     "shake": (
-        (*BEAM, "--shock", "sawtooth", "--length", "0.01", "--g", "2"),
-        *("um", r"gap x2 - x1.* to [\d.e+]+ um\b", ("acceleration of the box: ", "impacts")),
-        {"excitation": orchestrate.Shock(peak=2 * G, length=0.01, shape="sawtooth")},
+        *(f"{BEAM} --shock sawtooth --length 0.01 --g 2", "um", r"gap x2 - x1.* to [\d.e+]+ um\b"),
+        *(("acceleration of the box: ", "impacts"), {"excitation": SHOCK}),
     ),
     "cosimulate": (
-        (*BEAM, "--duration", "0.2", "--step", "0.002", "--drive")
-        + (BUILD / "fmi2" / "MotorShaker.fmu", "--connect", *CONNECTED),
+        f"{BEAM} --duration 0.2 --step 0.002 --drive MOTOR {CONNECTED}",
         *("mm", r"displacement of mass 1.* to [\d.e+-]+ mm\b", ()),
-        {
-            "duration": 0.2,
-            "step": 0.002,
-            "connect": {one.split("=")[0]: one.split("=")[0] for one in CONNECTED},
-        },
+        {"duration": 0.2, "step": 0.002, "connect": LINKS},
     ),
     "resonance": (
-        (*BEAM, "--hz", "12:13:0.1", "--g", "0.02", *LONGER),
-        *("rpm", r"frequency rpm", ("peaks", "bonded", "delaminated  up", "no jump")),
-        {"transient": 60, "samples": 16},
+        *(f"{BEAM} --hz 12:13:0.1 --g 0.02 {LONGER}", "rpm", r"frequency rpm"),
+        *(("peaks", "bonded", "delaminated  up", "no jump"), {"transient": 60, "samples": 16}),
     ),
-    "sweep": ((*SWEPT, *SHORT), "rpm", r"at 7[28]0 rpm", (), {"direction": "up", "transient": 10}),
+    "sweep": (
+        *(f"{BEAM} --hz 12:13:1 --g 0.02 --direction up {SHORT}", "rpm", r"at 7[28]0 rpm"),
+        *((), {"direction": "up", "transient": 10}),
+    ),
     "spectra": (
-        (*BOX, "--transient", "5", "--periods", "8"),
-        *("rpm", r"\n +720 +delaminated +0\.[\d]+ ", (), {**AT, "periods": 8}),
+        *(f"{BOX} --transient 5 --periods 8", "rpm", r"\n +720 +delaminated +0\.[\d]+ "),
+        *((), {**AT, "periods": 8}),
     ),
     "map": (
-        (*BEAM, "--hz", "12,13", "--g", "0.02", "--over", "e", "--values", "0.3,0.7", *SHORT),
-        *("rpm", r"7[28]0 rpm", ("repeated", "largest gap"), {"samples": 4}),
+        *(f"{BEAM} --hz 12,13 --g 0.02 --over e --values 0.3,0.7 {SHORT}", "rpm", "frequency rpm"),
+        *(("repeated", "largest gap"), {"samples": 4}),
     ),
     "lyapunov": (
-        ("--eta", "0.8,1.047", "--transient", "100", "--periods", "300"),
-        *("Hz", r"frequency Hz", ("exponent", "chaotic", "-0.007", "periodic")),
+        *("--eta 0.8,1.047 --transient 100 --periods 300", "Hz", r"frequency Hz"),
+        ("exponent", "chaotic", "-0.007", "periodic"),
         {"eta": (0.8, 1.047), "transient": 100, "periods": 300},
     ),
     "poincare": (
-        (*BOX, "--transient", "5", "--periods", "9"),
-        *("mm", r"gap .*: [\d.e-]+ to [\d.]+ mm\b", (), {**AT, "periods": 9}),
+        *(f"{BOX} --transient 5 --periods 9", "mm", r"gap .*: [\d.e-]+ to [\d.]+ mm\b"),
+        *((), {**AT, "periods": 9}),
     ),
     "attractors": (
-        ("--eta", "1.3,1.4", "--starts", "5", *LONGER, "--settle", "20"),
-        *("Hz", r"at 0\.222817 Hz", ("5 random starts", "multiplicity", "state at phase 0")),
+        *(f"--eta 1.3,1.4 --starts 5 {LONGER} --settle 20", "Hz", r"at 0\.222817 Hz"),
+        ("5 random starts", "multiplicity", "state at phase 0"),
         {"starts": 5, "eta": (1.3, 1.4)},
     ),
     "basin": (
-        ("--eta", "1.4", "--x", "x_rel,-0.1,0.8,4", "--y", "v_rel,-1,1,3", *LONGER),
-        *("um", r"v_rel -1000 to 1000 mm/s, x_rel -1e\+05 to 8e\+05 um"),
+        *(f"--eta 1.4 --x x_rel,-0.1,0.8,4 --y v_rel,-1,1,3 {LONGER}", "um"),
+        r"v_rel -1000 to 1000 mm/s, x_rel -1e\+05 to 8e\+05 um",
         *(("of 9 starts", "share", "3 starts left out"), {"x": ("x_rel", -0.1, 0.8, 4)}),
     ),
     "orbit": (
-        ("--eta", "3.0"),
-        *("mm", r"impact at 0\.480678\d* s, closing at [\d.]+ mm/s"),
+        *("--eta 3.0", "mm", r"impact at 0\.480678\d* s, closing at [\d.]+ mm/s"),
         ("unstable", "-3.359480", "impact at tau = 0.480678", "state at phase 0"),
         {"eta": 3.0, "period": 1},
     ),
     "manifold": (
-        ("--eta", "3.0", "--length", "1"),
-        *("mm", r"[\d.e-]+ to [\d.]+ mm"),
+        *("--eta 3.0 --length 1", "mm", r"[\d.e-]+ to [\d.]+ mm"),
         ("saddle: multiplier -3.359480", "length over the orbit's size", "length  "),
         {"eta": 3.0, "length": 1.0},
     ),
     "branch": (  # whose bifurcations are in Hz as well
-        ("--eta", "2.62", "--limits", "2.6:2.7"),
-        *("Hz", r"0\.4\d+ to 0\.4\d+ Hz[^$]*kind +frequency Hz\n +0 .* 0\.42143"),
+        *("--eta 2.62 --limits 2.6:2.7", "Hz"),
+        r"0\.4\d+ to 0\.4\d+ Hz[^$]*kind +frequency Hz\n +0 .* 0\.42143",
         *(("Neimark-Sacker", "limit"), {"limits": (2.6, 2.7), "over": "eta"}),
     ),
     "couple": (
-        ("--eta0", "1.4:1.41", "--only", "bonded", "--hold", "0", *ONE_WAY),
-        *("rpm", r"revolution: [\d.]+ to [\d.]+ rpm", ("undecided",)),
-        {},
+        *(f"--eta0 1.4:1.41 --only bonded --hold 0 {ONE_WAY}", "rpm"),
+        *(r"revolution: [\d.]+ to [\d.]+ rpm", ("undecided",), {}),
     ),
     "capture": (
-        ("--voltage", "1.45:1.6", "--count", "2", "--tolerance", "0.05", "--only", "bonded")
-        + ("--over", "rotor_inertia", "--values", "800,1400", *DRIVEN),
-        *(
-            "",
-            r"\n +1400 +1\.54375",
-            ("passes: 2 (50 %)",),
-            {"voltage": (1.45, 1.6), "values": (800.0, 1400.0)},
-        ),
+        "--voltage 1.45:1.6 --count 2 --tolerance 0.05 --only bonded "
+        f"--over rotor_inertia --values 800,1400 {DRIVEN}",
+        *("", r"\n +1400 +1\.54375", ("passes: 2 (50 %)",)),
+        {"voltage": (1.45, 1.6), "values": (800.0, 1400.0)},
     ),
     "passage": (
-        ("--eta0", "1.55:1.65", "--around", "60", "--revolutions", "4", "--only", "delaminated")
-        + ONE_WAY,
+        f"--eta0 1.55:1.65 --around 60 --revolutions 4 --only delaminated {ONE_WAY}",
         *("", "jump up at 1.569", ("around jumps",), {"around": 60.0}),
     ),
     "jump-voltages": (
-        ("--eta0", "1.5:1.66", *ONE_WAY[2:], "--rate", "4e-4,3e-4"),
+        f"--eta0 1.5:1.66 --one-way {DRIVEN} --rate 4e-4,3e-4",
         *("", "jump at rate 0", (), {"rates": (4e-4, 3e-4), "voltage": (1.5, 1.66)}),
     ),
     "drive-branch": (
-        ("--speed", "1.29:1.32", "--longest", "0.3", "--jobs", "1"),
+        "--speed 1.29:1.32 --longest 0.3 --jobs 1",
         *("", r"bonded +fold +1\.583", (), {"speed": (1.29, 1.32), "longest": 0.3}),
     ),
 }
@@ -153,7 +141,9 @@ def agree(given, expected):
 @pytest.mark.parametrize("command", ordinary(ASKED, set(ASKED) - SLOW))
 def test_a_command_asks_its_function_and_shows_the_answer(ask, tmp_path, monkeypatch, command):
     """What is stored is what the function has answered; other units change only what is shown."""
-    options, unit, words, always, keywords = ASKED[command]
+    line, unit, words, always, keywords = ASKED[command]
+    motor = str(BUILD / "fmi2" / "MotorShaker.fmu")
+    options = [motor if word == "MOTOR" else word for word in line.split()]
     name, folder, calls = cli.COMMANDS[command].calls, tmp_path / "results", []
     function = getattr(orchestrate, name)
 
@@ -166,7 +156,7 @@ def test_a_command_asks_its_function_and_shows_the_answer(ask, tmp_path, monkeyp
     few, none = ("--format", "csv"), ("--plot", "none")
     plain = ask(command, *options, *few, *(() if command in DRAWN else none)).success().out
     assert all(agree(question, keywords) for question, _ in calls) and bool(calls) == bool(keywords)
-    stored = {path: hashlib.sha256(path.read_bytes()).digest() for path in folder.glob("*.nc")}
+    stored = {path: path.read_bytes() for path in folder.glob("*.nc")}
     for _, answer in calls:
         assert any(xr.load_dataset(path).equals(answer.load()) for path in stored)
     assert all(path.name.startswith(f"{name}_") for path in stored)
@@ -181,36 +171,29 @@ def test_a_command_asks_its_function_and_shows_the_answer(ask, tmp_path, monkeyp
         assert any(f"[{unit}]" in column for column in columns), columns
     assert re.search(words, shown), (plain, shown)
     assert all(word in plain for word in always) and "complete already" not in plain, plain
-    assert stored == {
-        path: hashlib.sha256(path.read_bytes()).digest() for path in folder.glob("*.nc")
-    }
+    assert stored == {path: path.read_bytes() for path in folder.glob("*.nc")}
     told = re.findall(r"^/.*?(?=: complete already$|$)", f"{plain}{shown}", re.MULTILINE)
     assert set(told) == {str(path) for path in folder.iterdir()}
-
-
-def made_sweep(kinds, impacts):
-    """A made-up sweep of responses: their kinds, as ``multiplicity_decided`` has them."""
-    words = {"flag_values": [0, 1, 2], "flag_meanings": "irregular repeated undecided"}
-    count = len(kinds)
-    numbers = {"xi_rel_max": np.linspace(1.0, 2.0, count), "impacts_per_period": impacts}
-    numbers |= {name: np.full(count, 0.5) for name in ("x1_max", "x2_max", "a1_max", "a2_max")}
-    numbers |= {"multiplicity": np.ones(count, dtype=int), "permanent_contact": np.zeros(count)}
-    data = xr.Dataset({name: ("eta", values) for name, values in numbers.items()})
-    data = data.assign_coords(eta=1.0 + 0.01 * np.arange(count))
-    for name in ("x1_max", "x2_max"):
-        data[name].attrs["units"] = "m"
-    return data.assign(multiplicity_decided=("eta", kinds, words)).assign_attrs(k1=1.0, m1=1.0)
 
 
 def test_a_sweep_is_summed_up_by_where_responses_repeat():
     """Made-up: how often, and the three widest ranges of each kind."""
     kinds = np.repeat([1, 0, 1, 2, 1, 0, 1, 0, 1, 0, 1, 0], [9, 2, 20, 6, 8, 3, 7, 1, 5, 1, 4, 1])
-    lines = list(cli.responses.Sweep().summary_lines(made_sweep(kinds, np.ones(len(kinds)))))
+    words = {"flag_values": [0, 1, 2], "flag_meanings": "irregular repeated undecided"}
+    numbers = {"xi_rel_max": np.linspace(1.0, 2.0, 67), "multiplicity": np.ones(67, dtype=int)}
+    numbers |= {"impacts_per_period": np.ones(67), "eta": 1.0 + 0.01 * np.arange(67)}
+    data = xr.Dataset({name: ("eta", values) for name, values in numbers.items()})
+    data = data.assign(multiplicity_decided=("eta", kinds, words)).assign_attrs(k1=1.0, m1=1.0)
+    lines = list(cli.responses.Sweep().summary_lines(data))
     assert "largest gap: xi_Rel = 2 at eta = 1.66" in lines
     assert "undecided: 6 (9 %) at eta = 1.31 to 1.36" in lines
     assert any(line.startswith("undecided: ") and "--transient 5000" in line for line in lines)
     ranges = "1 to 1.08, 1.11 to 1.3, 1.37 to 1.44 and 3 shorter ranges"
     assert f"multiplicity 1: 53 (79 %) at eta = {ranges}" in lines
+    few = list(cli.responses.Sweep().summary_lines(data.isel(eta=[0, 9, 31])))
+    assert few[0].split()[:4] == ["eta", "largest", "gap", "impacts_per_period"]
+    assert few[3].split()[-2:] == ["1", "undecided"] and few[4].startswith("undecided: slow")
+    assert len(few) == 5
 
 
 TRIVIAL = {  # options, and what is said of what is trivial
@@ -322,8 +305,8 @@ def test_the_excitation_of_a_file_acts(ask, tmp_path):
     assert done.success().out.splitlines()[:-1] == same.success().out.splitlines()[:-1]
     path.write_text(f"{head}frequency_hz = 5.0\namplitude = 0.0\nforce1 = 2.0\n")
     assert "impacts" in ask("simulate", "--structure", path, *short).success().out
-    levels = ("resonance", *BEAM, "--hz", "12", "--g", "0.1,0.2", "--force2", "1")
-    ask(*levels).complaint("--force2: expected one level, --g")
+    levels = f"resonance {BEAM} --hz 12 --g 0.1,0.2 --force2 1"
+    ask(*levels.split()).complaint("--force2: expected one level, --g")
 
 
 def test_curves_over_sweeps_and_maps(ask, tmp_path):
@@ -345,7 +328,7 @@ def test_curves_over_sweeps_and_maps(ask, tmp_path):
     done = ask("border", "--start", path, "--bifurcation", "all", *limits).success()
     assert "Neimark-Sacker" in done.out and len(list(folder.glob("border_all*.png"))) == 1
     (curve,) = folder.glob("border_window*.nc")
-    few = ("map", "--eta", "2.6,2.7", "--over", "e", "--values", "0.69,0.71", *SHORT)
+    few = f"map --eta 2.6,2.7 --over e --values 0.69,0.71 {SHORT}".split()
     ask(*few, "--overlay", f"{curve},{curve}").success()
     assert all(shows_something(picture) for picture in folder.glob("*_over_*.png"))
     ask(*few, "--overlay", path).complaint("--overlay", "of branch; expected one of border")
@@ -353,13 +336,11 @@ def test_curves_over_sweeps_and_maps(ask, tmp_path):
 
 
 def test_levels_have_both_structures_and_where_they_open(ask, tmp_path):
-    beam = (*BEAM, "--set", "preload=20um", "--hz", "10,12.5", *LONGER)
-    done = ask("resonance", *beam, "--g", "0.002,0.02", "--size", "16:9").success()
+    beam = f"{BEAM} --set preload=20um --hz 10,12.5 {LONGER} --g 0.002,0.02 --size 16:9"
+    done = ask("resonance", *beam.split()).success()
     title, _, low, bonded, high = (line.split() for line in done.out.splitlines()[:5])
-    assert title[2:6] == ["structure", "x1_max", "mm", "frequency"] and title[-2:] == [
-        "opens",
-        "at",
-    ]
+    assert title[2:6] == ["structure", "x1_max", "mm", "frequency"]
+    assert title[-2:] == ["opens", "at"]
     assert low[-2:] == ["12.5", "Hz"] and bonded[-1] == "nowhere"
     assert high[:2] == ["0.02", "delaminated"] and high[3] == "12.5"
     picture = image.imread(next((tmp_path / "results").glob("*_16-9.png")))
@@ -367,9 +348,8 @@ def test_levels_have_both_structures_and_where_they_open(ask, tmp_path):
 
 
 def test_a_plan(ask, tmp_path, monkeypatch):
-    test = (*BEAM, "--set", "zeta=5%", "--g", "0.002,0.2", "--noise", "1e-3", "--range", "1")
-    test = (*test, "--jobs", "1")
-    out = ask("plan", *test).success().out
+    test = f"plan {BEAM} --set zeta=5% --g 0.002,0.2 --noise 1e-3 --range 1 --jobs 1"
+    out = ask(*test.split()).success().out
     for words in ("preload=20um", "verdict on the guess", "on its sound twin", "overload"):
         assert words in out
     assert shows_something(next((tmp_path / "results").glob("plan_*.png")))
@@ -381,7 +361,7 @@ def test_a_plan(ask, tmp_path, monkeypatch):
         raise InputError("stop")
 
     monkeypatch.setattr(orchestrate, "plan_test", plan)
-    ask("plan", *BEAM, "--faces", "2", "--noise", "1", "--g", "0.1,0.2")
+    ask(*f"plan {BEAM} --faces 2 --noise 1 --g 0.1,0.2".split())
     assert list(asked["sensor"]) == ["acceleration2"] and tuple(asked["g"]) == (0.1, 0.2)
     assert asked["sensor"]["acceleration2"].noise == 1
 
