@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -117,12 +117,9 @@ what it gives:
         verdicts = orchestrate.detect_all(beams, guess, **how) if beams else {}
         for sweep, record in records.items():
             verdict = self.with_origin(sweep, record, verdicts[names[sweep]])
-            shown = with_units(verdict, self.record_display_units())
-            print(*self.verdict_lines(sweep, shown), sep="\n")
-            log.info("%s: signs, pictures and page", sweep.path.name)
             same = [one for key, one in records.items() if key.path == sweep.path and key != sweep]
-            signs = orchestrate.signs(record, other=[*others, *same], structure=guess)
-            self.write_and_print_files(names[sweep], {"": verdict, "_signs": signs})
+            signs = partial(orchestrate.signs, record, other=[*others, *same], structure=guess)
+            self.print_and_write(sweep, names[sweep], verdict, signs)
         if refused:
             count = len({one.path for one in records}) + len(refused)
             raise InputError(f"{len(refused)} of {count} records refused: {'; '.join(refused)}")
@@ -178,26 +175,27 @@ what it gives:
         }
         return verdict.assign_attrs({name: text for name, text in words.items() if text})
 
-    def write_and_print_files(self, stem: str, answers: dict[str, xr.Dataset]) -> None:
+    def print_and_write(
+        self, sweep: Sweep, stem: str, verdict: xr.Dataset, compute_signs: Callable[[], xr.Dataset]
+    ) -> None:
+        from ..show.verdict import make_verdict
+
         units = self.record_display_units()
-        for ending, answer in answers.items():
+        words = make_verdict(with_units(verdict, units))
+        print(f"{sweep}: {words.word} {grammar.with_option_names(words.sentence, self)}")
+        for name, label in LINES.items():
+            if text := verdict.attrs.get(name):
+                print(f"  {label}: {grammar.with_option_names(text, self)}")
+        log.info("%s: signs, pictures and page", sweep.path.name)
+        signs = compute_signs()
+        for ending, answer in (("", verdict), ("_signs", signs)):
             files = ResultFiles.from_options(self, f"{stem}{ending}", fresh=True)
             output.write_unstored_netcdf(files, answer)
             shown = with_units(answer, units)
             files.write_tables(shown)
             files.write_pictures(partial(orchestrate.plot, shown))
-        page = self.output / f"{stem}.html"
-        more: Any = {"output": page, "notes": self.notes or "", "units": units}
-        print(orchestrate.report(*answers.values(), **more))
-
-    def verdict_lines(self, sweep: Sweep, verdict: xr.Dataset) -> Iterator[str]:
-        from ..show.verdict import make_verdict
-
-        shown = make_verdict(verdict)
-        yield f"{sweep}: {shown.word} {grammar.with_option_names(shown.sentence, self)}"
-        for name, label in LINES.items():
-            if verdict.attrs.get(name):
-                yield f"  {label}: {grammar.with_option_names(verdict.attrs[name], self)}"
+        more: Any = {"notes": self.notes or "", "units": units}
+        print(orchestrate.report(verdict, signs, output=self.output / f"{stem}.html", **more))
 
 
 class Plan(OfStructure, OfSensors, FunctionCommand, output.Results):

@@ -167,15 +167,6 @@ class OfSchedule(OfRamp):
         value="TIME",
     )
 
-    def parse_ramp_rate(self, structure: Structure, drive: Drive) -> float:
-        self.given_option("rate", "volt_rate")
-        if self.volt_rate is not None:
-            return grammar.parse_single_rate("--volt-rate", self.volt_rate)
-        rate = USUAL[self.drive][1] if self.drive in USUAL else RATE
-        if self.rate is not None:
-            rate = grammar.parse_single_rate("--rate", self.rate)
-        return drive.volts(structure) * structure.omega * rate
-
     def make_schedule(self, structure: Structure, drive: Drive, control: Any) -> Schedule:
         from ..weak_drive.couple import schedule_from_arguments
         from ..weak_drive.schedule import Course
@@ -189,10 +180,15 @@ class OfSchedule(OfRamp):
             given = " to ".join(f"{end:g}" for end in ends)
             expected = "expected --duration, in s, with one voltage and only so"
             raise InputError(f"voltage {given} V: {expected}")
+        volts = drive.volts(structure)
+        if (chosen := self.given_option("rate", "volt_rate")) is None:
+            rate = USUAL[self.drive][1] if self.drive in USUAL else RATE
+        else:
+            rate = grammar.parse_single_rate(option_names([chosen]), getattr(self, chosen))
         ramp: Any = {
-            "rate": self.parse_ramp_rate(structure, drive),
+            "rate": rate if chosen == "volt_rate" else volts * structure.omega * rate,
             "settle": self.settle / structure.omega,
-            "increment": self.increment * drive.volts(structure),
+            "increment": self.increment * volts,
             "back": not self.one_way,
             "spin_up": 0.0 if control else None,
         }

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 from ..constants import GRAVITY
 from ..errors import InputError, StoreError
 from ..lazy import xr
-from ..model import ranges
+from ..model import PARAMETERS, ranges
 from ..model.spelling import expected_one_of
 
 Parsed = TypeVar("Parsed")
@@ -299,7 +299,10 @@ def parse_changes(texts: Iterable[str], wall: bool = False) -> dict[str, float |
         names = known.get(name, (name,))
         value: float | bool = text == "true"
         if text not in ("true", "false"):
-            check_parameter_name(names[0])
+            of_structure = (*PARAMETERS, "bonded", "wall", "preload", *SET_NAMES)
+            if names[0] not in (*of_structure, *ranges.DRIVE):
+                expected = expected_one_of(MEANT.get(names[0], names[0]), of_structure)
+                raise InputError(f"--set {names[0]}: no parameter; {expected}")
             value = parse_number(f"--set {names[0]}=", text, names[0], ", or true or false")
         if name == "preload":  # as a length: in N it depends on the springs
             if text[-1:] != "m" or value < 0.0:
@@ -309,12 +312,3 @@ def parse_changes(texts: Iterable[str], wall: bool = False) -> dict[str, float |
             raise InputError(f"--set {name}={text}: {min(twice)} is set already; expected once")
         changes |= dict.fromkeys(names, value)
     return changes
-
-
-def check_parameter_name(name: str) -> None:
-    from ..model import PARAMETERS
-
-    known = (*PARAMETERS, "bonded", "wall", "preload", *SET_NAMES)
-    if name not in (*known, *ranges.DRIVE):
-        expected = expected_one_of(MEANT.get(name, name), known)
-        raise InputError(f"--set {name}: no parameter; {expected}")

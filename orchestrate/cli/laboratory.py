@@ -207,25 +207,6 @@ ANALYSES = {  # of --show: the public function, what it shows; whose peaks, what
 SHOWN = ", ".join(f"{name} ({row[1]})" for name, row in ANALYSES.items())
 
 
-def analysis_peak_lines(name: str, data: xr.Dataset) -> Iterator[str]:
-    """Yield a row for each channel, and each order: the largest value, and where it is."""
-    if name in ("orders", "harmonics"):  # of the box they are those of the excitation
-        data = data.drop_sel(channel="box_acceleration", errors="ignore")
-    data = data.assign_coords(channel=[MASSES[str(one)] for one in data.channel.values])
-    _, _, variable, others = ANALYSES[name]
-    if not variable:
-        yield from printing.table_lines(data, others)
-        return
-    peaks = data[variable]
-    if name == "frf":
-        peaks = peaks.sel(estimator="H1", drop=True).where(data.excited > 0)
-    along = [dim for dim in peaks.dims if dim not in ("channel", "order")]
-    top = data.assign({variable: peaks}).isel(peaks.fillna(-1.0).argmax(along))
-    where = "at:.5g, time:.4g" if "time" in top.coords else "at:.5g"
-    shown = f"{variable}:.4g, {where}{others and f', {others}'}"
-    yield from printing.table_lines(top.assign(at=top.frequency), shown)
-
-
 class Settings(Options):
     """Settings of analyses."""
 
@@ -308,8 +289,22 @@ class Analyse(AnalysedRecords, OfSensors, Reading, Settings, output.Shown, Funct
         return self.record_display_units()
 
     def summary_lines(self, data: xr.Dataset) -> Iterator[str]:
-        yield ANALYSES[self.analysis][1]
-        yield from analysis_peak_lines(self.analysis, data)
+        """Yield a row for each channel, and each order: the largest value, and where it is."""
+        _, title, variable, others = ANALYSES[self.analysis]
+        yield title
+        if self.analysis in ("orders", "harmonics"):  # of the box they are those of the excitation
+            data = data.drop_sel(channel="box_acceleration", errors="ignore")
+        data = data.assign_coords(channel=[MASSES[str(one)] for one in data.channel.values])
+        if variable:
+            peaks = data[variable]
+            if self.analysis == "frf":
+                peaks = peaks.sel(estimator="H1", drop=True).where(data.excited > 0)
+            along = [dim for dim in peaks.dims if dim not in ("channel", "order")]
+            data = data.assign({variable: peaks}).isel(peaks.fillna(-1.0).argmax(along))
+            where = "at:.5g, time:.4g" if "time" in data.coords else "at:.5g"
+            others = f"{variable}:.4g, {where}{others and f', {others}'}"
+            data = data.assign(at=data.frequency)
+        yield from printing.table_lines(data, others)
 
     def draw(self, results: Runs, question: Keywords, *_: xr.Dataset) -> Any:
         from ..show.analysis import draw

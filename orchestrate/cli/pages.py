@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -150,15 +149,10 @@ class Report(InUnits, InFolder, Command):
         print(orchestrate.report(*answers, output=page, **words, units=self.read_units()))
 
 
-def claim_lines(verdicts: Mapping[str, Any]) -> Iterator[str]:
-    for row in verdicts["claims"]:
-        text, printed = row["text"], row["printed"]
-        verdict = f"{row['section']:4} {row['verdict']:7}"
-        yield f"{verdict} {text}: paper {printed}, found {row['found']}"
-    for row in verdicts["regions"]:
-        shares = f"chaotic {row['chaotic']:5} neutral {row['neutral']:5}"
-        where = f"{row['case']:18} {row['region']:13} {row['verdict']:16}"
-        yield f"{where} {shares} largest {row['largest']}"
+CLAIM = "{section:4} {verdict:7} {text}: paper {printed}, found {found}"
+REGION = (
+    "{case:18} {region:13} {verdict:16} chaotic {chaotic:5} neutral {neutral:5} largest {largest}"
+)
 
 
 class Paper(InFolder, HowRun, Command):
@@ -190,5 +184,7 @@ class Paper(InFolder, HowRun, Command):
         figures = None if self.figures is None else self.figures.split(",")
         resolution = QUICK if self.quick else FULL
         outcome = reproduce(output, resolution, figures, self.running_keywords())
-        print(*claim_lines(outcome.claims_and_regions), sep="\n")
+        for kind, line in (("claims", CLAIM), ("regions", REGION)):
+            for row in outcome.claims_and_regions[kind]:
+                print(line.format(**row))
         print(*outcome.pictures.values(), outcome.report, sep="\n")
