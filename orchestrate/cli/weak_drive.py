@@ -245,23 +245,19 @@ def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
     yield from printing.listing_lines(rows, "bifurcation", "structure, kind, voltage, speed")
     if rows.sizes["bifurcation"]:
         yield "at which of them a motor that follows its voltage jumps: jump-voltages, or couple"
-    legs = [data.sel(structure=name, leg=leg) for name in data.structure for leg in data.leg]
-    legs = [leg for leg in legs if leg.voltage.notnull().any()]
-    last = [leg.dropna("point", subset=["voltage"]).isel(point=-1) for leg in legs]
-    columns = {
-        "branch": [f"{leg.structure.item()}, {leg.leg.item()}" for leg in legs],
-        "motions": [str(int(leg.voltage.notnull().sum())) for leg in legs],
-        "stable": [str(int(leg.stable.sum())) for leg in legs],
-        "ends by": [str(leg.end.item()) for leg in legs],
-        "at": [
-            f"{float(a.voltage):.5f} V, {format_quantity(a, a.speed, 'rad/s', '.6g')}" for a in last
-        ],
-    }
-    unlocated = [format_unlocated_changes(leg, data.bifurcation_speed.values) for leg in legs]
-    if any(unlocated):
-        columns["stability changes near, not located (--period)"] = unlocated
-    yield from printing.text_table_lines(columns)
-    yield from printing.hint_lines(dict.fromkeys(columns["ends by"]))
+    located, count = data.bifurcation_speed.values, data.voltage.count("point").drop_attrs()
+    last = data.isel(point=count - 1).rename(end="ends by")
+    last = last.assign(motions=count, stable=data.stable.sum("point").drop_attrs())
+    names = "motions, stable, ends by, voltage:.5f, speed"
+    unlocated = [
+        [format_unlocated_changes(data.sel(structure=name, leg=leg), located) for leg in data.leg]
+        for name in data.structure
+    ]
+    if any(map(any, unlocated)):
+        title = "unlocated changes of stability near (--period)"
+        last, names = last.assign({title: (count.dims, unlocated)}), f"{names}, {title}"
+    yield from printing.table_lines(last, names, needs="voltage")
+    yield from printing.hint_lines(dict.fromkeys(data.end.values[count.values > 0].tolist()))
 
 
 class DriveBranch(DriveCommand, Stored, OfBoth):
@@ -305,8 +301,8 @@ def drive_variable_lines(drive: Path) -> Iterator[str]:
 
     description = describe(drive)
     yield f"{description.name}, FMI {description.fmi_version}"
-    listed = [pair for pair in description.variables.items() if pair[1].causality in LISTED]
-    listed.sort(key=lambda pair: LISTED.index(pair[1].causality))
+    every = description.variables.items()
+    listed = [pair for kind in LISTED for pair in every if pair[1].causality == kind]
     columns = {
         "causality": [one.causality for _, one in listed],
         "name": [name for name, _ in listed],

@@ -10,32 +10,9 @@ import xarray as xr
 
 from orchestrate import Drive, Structure, couple
 from orchestrate.cli import weak_drive
+from orchestrate.model.toml_files import write
 
 from .test_commands import shows_something
-
-MOTOR = """
-[structure]
-m1 = 1.5
-m2 = 1.5
-k1 = 8437.5
-k2 = 10125.0
-d1 = 4.5
-d2 = 4.5
-e = 0.7
-
-[motor]
-unbalance_mass = 0.03
-unbalance_radius = 0.02
-rotor_inertia = 6e-5
-motor_constant = 0.06
-armature_resistance = 14.0
-armature_inductance = 0.002
-
-[box]
-box_mass = 5.0
-box_stiffness = 300.0
-box_damping = 4.0
-"""
 
 
 def results(folder):
@@ -66,8 +43,8 @@ def test_couple_tells_jumps_beside_where_the_ramp_shows_them(ask, tmp_path):
 
 def test_a_motor_of_one_s_own(ask, tmp_path):
     """Volts and seconds; voltages from a file; both kinds of controllers; as a package."""
-    motor, none = tmp_path / "motor.toml", ("--plot", "none")
-    motor.write_text(MOTOR)
+    drive = Drive.from_file("beam").replace(unbalance_mass=0.03, armature_inductance=0.002)
+    motor, none = write(tmp_path / "motor.toml", drive=drive), ("--plot", "none")
     own = ("couple", "--structure", "beam", "--set", "clearance=20um", "--drive", motor)
     own = (*own, "--only", "delaminated")
     ramp = ("--voltage", "5:5.2", "--volt-rate", "0.2", "--one-way", "--settle", "20")
@@ -104,6 +81,30 @@ def test_a_motor_by_its_datasheet(ask, tmp_path):
     drive, structure = Drive.from_file("quick").replace(**line), Structure.from_file("quick")
     expected = couple(structure.as_bonded(), drive, voltage=2.0, duration=60.0, progress=False)
     assert np.array_equal(data.speed, expected.speed) and data.sizes["revolution"] > 10
+
+
+def test_branches_and_what_changes_along_them_are_shown():
+    """Made-up: one whose stability changes unnoticed, one with a located fold, one that is none."""
+    sides = {"structure": ["bonded", "delaminated"], "leg": ["from below", "from above"]}
+    voltage = np.array(
+        [[[1.0, 2.0, 3.0], [1.0, np.nan, np.nan]], [[4.0, 5.0, np.nan], [np.nan] * 3]]
+    )
+    stable = np.array([[[1, 0, 0], [1, 0, 0]], [[1, 0, 0], [0, 0, 0]]])
+    points = {"voltage": voltage, "speed": 10.0 * voltage, "stable": stable}
+    data = xr.Dataset({n: ((*sides, "point"), values) for n, values in points.items()}, sides)
+    data = data.assign(end=(tuple(sides), [["limit", "most points"], ["fold", ""]]))
+    row = {"structure": "delaminated", "kind": "fold", "voltage": 4.5, "speed": 45.0}
+    data = data.assign({f"bifurcation_{n}": ("bifurcation", [x]) for n, x in row.items()})
+    lines = [" ".join(line.split()) for line in weak_drive.DriveBranch().summary_lines(data)]
+    assert lines[2] == "delaminated fold 4.5 45" and "jump-voltages" in lines[3]
+    title = "structure leg motions stable ends by voltage speed unlocated changes of stability near"
+    assert lines[4].startswith(title)
+    assert lines[5:8] == [
+        "bonded from below 3 1 limit 3.00000 30 10 rad/s",
+        "bonded from above 1 1 most points 1.00000 10",
+        "delaminated from below 2 1 fold 5.00000 50",
+    ]
+    assert lines[8:] == ["most points: a larger --most goes on"]
 
 
 def test_a_jump_that_is_undecided_is_shown_so():
