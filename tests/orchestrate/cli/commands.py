@@ -102,10 +102,6 @@ class Commands:
         """Bytes of the NetCDF files, by name."""
         return {path.name: path.read_bytes() for path in sorted(self.output.glob("*.nc"))}
 
-    def chunks(self) -> int:
-        """Chunks in all journals on disk."""
-        return sum(map(chunks_in, self.output.glob("*.journal")))
-
 
 def end(process: subprocess.Popen[str], patience: float = PATIENCE) -> Done:
     """Wait for the end of a process, ``patience`` seconds at most."""
