@@ -131,12 +131,10 @@ class FunctionCommand(Command):
             files[state].write_tables(data)
         if picture and self.has_picture(question):
             common.write_pictures(partial(self.draw, shown, question, *branches))
-        self.write_further_files(common, question, shown, results)
+        self.write_further_files(common, shown, results)
         return results
 
-    def write_further_files(
-        self, files: ResultFiles, question: Keywords, shown: Runs, results: Runs
-    ) -> None:
+    def write_further_files(self, files: ResultFiles, shown: Runs, results: Runs) -> None:
         """Write what a command has besides results and picture."""
 
     def read_overlay_branches(self, structure: Any, question: Keywords) -> list[xr.Dataset]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -175,9 +175,8 @@ what it gives:
         }
         return verdict.assign_attrs({name: text for name, text in words.items() if text})
 
-    def print_and_write(
-        self, sweep: Sweep, stem: str, verdict: xr.Dataset, compute_signs: Callable[[], xr.Dataset]
-    ) -> None:
+    def print_and_write(self, sweep: Sweep, stem: str, verdict: xr.Dataset, signs: Any) -> None:
+        """Print and write a verdict, then its signs, from the function that computes them."""
         from ..show.verdict import make_verdict
 
         units = self.record_display_units()
@@ -187,15 +186,15 @@ what it gives:
             if text := verdict.attrs.get(name):
                 print(f"  {label}: {grammar.with_option_names(text, self)}")
         log.info("%s: signs, pictures and page", sweep.path.name)
-        signs = compute_signs()
-        for ending, answer in (("", verdict), ("_signs", signs)):
+        answers = {"": verdict, "_signs": signs()}
+        for ending, answer in answers.items():
             files = ResultFiles.from_options(self, f"{stem}{ending}", fresh=True)
             output.write_unstored_netcdf(files, answer)
             shown = with_units(answer, units)
             files.write_tables(shown)
             files.write_pictures(partial(orchestrate.plot, shown))
         more: Any = {"notes": self.notes or "", "units": units}
-        print(orchestrate.report(verdict, signs, output=self.output / f"{stem}.html", **more))
+        print(orchestrate.report(*answers.values(), output=self.output / f"{stem}.html", **more))
 
 
 class Plan(OfStructure, OfSensors, FunctionCommand, output.Results):

@@ -32,11 +32,8 @@ COMMA = re.compile(r"-?\d+,\d+ *[a-zA-Z%]*")  # a decimal comma, perhaps with a 
 SET_NAMES = {"zeta": ("zeta1", "zeta2"), "f1_hz": ("f1",), "f2_hz": ("f2",)}  # and as in a file
 OF_ONE_MASS = {name: (f"{name}1",) for name in ("m", "k", "d", "f", "zeta")}  # before a stop
 MEANT = {
-    "gap": "clearance",
-    "restitution": "e",
-    "mass": "m1",
-    "frequency": "f1",
-    "damping": "zeta1",
+    **{"gap": "clearance", "restitution": "e", "mass": "m1"},
+    **{"frequency": "f1", "damping": "zeta1"},
 }
 
 # -- numbers --------------------------------------------------------------------------------------
@@ -223,9 +220,8 @@ def with_option_names(message: str, chosen: Any) -> str:
             return keyword[0]
         file = f" {options[name]}" if isinstance(options.get(name), Path) else ""
         flag = flag if flag in type(chosen).flags() else ""  # else it has none
-        return flag + {" = None": " is missing", " = ": " "}.get(
-            joint, f"{file}{joint}".lstrip(" " * (not flag))
-        )
+        after = f"{file}{joint}" if flag else f"{file}{joint}".lstrip()
+        return flag + {" = None": " is missing", " = ": " "}.get(joint, after)
 
     def replace_advice(keyword: re.Match[str]) -> str:  # what to do
         value = MAPPING_ITEM.sub(r"\1=\2", keyword["value"]).strip("'{}")
@@ -242,12 +238,9 @@ def parse_values(
     option: str, text: str, allow_zero: bool = False, name: str = ""
 ) -> tuple[float, ...]:
     """Parse ``FIRST:LAST:STEP`` or ``A,B,...`` of numbers > 0, or >= 0; ``name``: the quantity."""
-    parts = text.split(":" if ":" in text else ",")
+    parts, quantity = text.split(":" if ":" in text else ","), name or quantity_of_option(option)
     try:
-        exact = [
-            Decimal(repr(parse_quantity(name or quantity_of_option(option), part)))
-            for part in parts
-        ]
+        exact = [Decimal(repr(parse_quantity(quantity, part))) for part in parts]
     except ValueError:
         raise InputError(f"{option} {text}: not numbers; {RANGE}") from None
     finite = all(one.is_finite() for one in exact)

@@ -165,22 +165,18 @@ class Shake(
         structure, shaker = self.read_and_report_structure(), self.shaker
         if self.read_sensor() is not None:  # before anything is computed
             refuse_unsupported_structure("--sensor", structure)
-        excitation = self.read_excitation()
-        if (self.sample_rate or math.inf) < (needed := excitation.usual_rate) / 10.0:
+        self.excitation = self.read_excitation()
+        if (self.sample_rate or math.inf) < (needed := self.excitation.usual_rate) / 10.0:
             text = f"--sample-rate {self.sample_rate:g}: too few samples to show the excitation"
             warn(f"{text}; the default is {needed:g}")
-        return structure, {
-            "excitation": excitation,
-            **self.function_keywords(),
-            "shaker": None if shaker is None else Shaker.from_file(shaker),
-        }
+        question = {"excitation": self.excitation, **self.function_keywords()}
+        question["shaker"] = None if shaker is None else Shaker.from_file(shaker)
+        return structure, question
 
-    def write_further_files(
-        self, files: ResultFiles, question: Keywords, shown: Runs, results: Runs
-    ) -> None:
+    def write_further_files(self, files: ResultFiles, shown: Runs, results: Runs) -> None:
         if (sensor := self.read_sensor()) is None:
             return
-        excitation = None if self.shaker else question["excitation"]
+        excitation = None if self.shaker else self.excitation
         # one file, one name
         own = "" if self.store else question_digest(sensor.label, sensor.rate)
         for state, data in results.items():

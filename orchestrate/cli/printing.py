@@ -33,6 +33,8 @@ HINTS = {  # words of results, alone or of a variable, and what to do
 }
 COLUMN = re.compile(r"([^ ,+:][^,+:]*)(?:\+(\w+))?(?::([^,]+))?")  # a variable, its error, format
 
+Parts = tuple[str, str, str]  # a name, a number, a unit
+
 # -- variables ------------------------------------------------------------------------------------
 
 
@@ -54,9 +56,8 @@ def describe(data: xr.Dataset, names: str) -> Iterator[str]:
             yield from count_lines(data, array)
         elif {*array.dims} <= parameters:
             top = data.isel(array.argmax(...))
-            text = flag_word(top[array.name]) or units.format_quantity(
-                data, top[array.name], unit, ".4g"
-            )
+            value = top[array.name]
+            text = flag_word(value) or units.format_quantity(data, value, unit, ".4g")
             if array.name == "xi_rel_max":
                 text = format_largest_gap(top)
             dims = map(str, reversed(array.dims))
@@ -237,9 +238,7 @@ def format_full_range(data: xr.Dataset, name: str) -> str:
     return format_parameter(data, name, data[name].min(), data[name].max())
 
 
-def parameter_parts(
-    data: xr.Dataset, name: str, value: float, form: str = ".6g"
-) -> tuple[str, str, str]:
+def parameter_parts(data: xr.Dataset, name: str, value: float, form: str = ".6g") -> Parts:
     """Return a parameter's name (may be empty), formatted value and unit for display."""
     chosen, omega = units.display_units_of(data), units.omega_of(data)
     if name == "eta" and chosen.frequency not in ("", "eta") and math.isfinite(omega):
@@ -267,14 +266,13 @@ def format_ranges(data: xr.Dataset, name: str, flags: Any, max_ranges: int = 8) 
     if not runs:
         return "nowhere"
     longest = sorted(sorted(runs, key=lambda run: run[0] - run[1])[:max_ranges])
-    ends = [
-        [parameter_parts(data, name, float(values[i])) for i in dict.fromkeys(run)]
-        for run in longest
-    ]
-    before, _, unit = ends[0][0]
-    text = ", ".join(" to ".join(number for _, number, _ in run) for run in ends)
+    before, _, unit = parameter_parts(data, name, float(values[longest[0][0]]))
+    texts = []
+    for run in longest:
+        ends = (parameter_parts(data, name, float(values[i])) for i in dict.fromkeys(run))
+        texts.append(" to ".join(number for _, number, _ in ends))
     left = len(runs) - len(longest)
-    words = f"{before} = {text}" if before else text
+    words = f"{before} = " * bool(before) + ", ".join(texts)
     return f"{words} {unit}".rstrip() + (f" and {left} shorter ranges" if left else "")
 
 

@@ -51,18 +51,17 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
     def __call__(self) -> None:
         if self.ssp:
             structure, motor, question = self.read_question()
-            print(self.write_ssp_package(self.ssp, structure, motor, question))
+            print(self.write_ssp_package(structure, motor, question))
         else:
             super().__call__()
 
     def make_job(self, structure: Structure, motor: Drive, question: Keywords) -> CoupleJob:
         from ..weak_drive.couple import make_couple_job, scheme_from_arguments
 
-        control, voltage, step, tolerance, hold = (
-            question[name] for name in ("control", "voltage", "step", "tolerance", "hold")
-        )
-        scheme = scheme_from_arguments(structure, step, tolerance, control is not None)
-        return make_couple_job(structure, motor, voltage, scheme, control=control, hold=hold)
+        control, accuracy = question["control"], (question["step"], question["tolerance"])
+        scheme = scheme_from_arguments(structure, *accuracy, control is not None)
+        more = {"control": control, "hold": question["hold"]}
+        return make_couple_job(structure, motor, question["voltage"], scheme, **more)
 
     def compute(self, states: States, others: Any, question: Keywords, files: Files) -> Runs:
         from ..fmu import make_fmu_finder
@@ -96,10 +95,9 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         keys = ("missing_over_motor_work", "defects_over_motor_work")
         missing, defects = (float(data.attrs[key]) for key in keys)
         if max(abs(missing), defects) > ERROR_LIMIT:
-            yield (
-                f"relative energy error {missing:.1e}, coupling error {defects:.1e} of the motor's "
-                f"work: more than {ERROR_LIMIT:g}, take a shorter --step"
-            )
+            errors = f"relative energy error {missing:.1e}, coupling error {defects:.1e}"
+            limit = f"more than {ERROR_LIMIT:g}, take a shorter --step"
+            yield f"{errors} of the motor's work: {limit}"
         volts = self.job.drive.volts(self.job.structure)
         half = 0.5 * abs(data.jump_high - data.jump_low)
         shown = data.assign(half=half, eta0=(data.jumps / volts).assign_attrs(units="1"))
@@ -121,25 +119,21 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         branches = None if self.stationary is None else with_units(self.stationary, units)
         return draw_ramps(results, theory, branches, title)
 
-    def write_further_files(
-        self, files: ResultFiles, question: Keywords, shown: Runs, results: Runs
-    ) -> None:
+    def write_further_files(self, files: ResultFiles, shown: Runs, results: Runs) -> None:
         if any(data.jumps.notnull().any() for data in results.values()):
             title = self.picture_title(shown)
             draw = partial(orchestrate.plot, *shown.values(), part="jumps", title=title)
             files.write_pictures(draw, "jumps")
 
-    def write_ssp_package(
-        self, path: Path, structure: Structure, motor: Drive, question: Keywords
-    ) -> Path:
+    def write_ssp_package(self, structure: Structure, motor: Drive, question: Keywords) -> Path:
         from ..fmu import find_or_export
 
         *_, chosen = self.structures_by_state(structure).values()
         job, own = self.make_job(chosen, motor, question), fmus_by_model(self.fmu)
         fmus = [find_or_export(n, "fmi2", self.build_folder, own.get(n)).path for n in job.models]
-        start: Any = {"voltage": job.schedule.voltage(0.0), "speed_start": job.speed_start}
-        version = self.ssp_version
-        return orchestrate.write_ssp(path, chosen, motor, fmus=fmus, version=version, **start)
+        start = {"voltage": job.schedule.voltage(0.0), "speed_start": job.speed_start}
+        more: Any = {"fmus": fmus, "version": self.ssp_version, **start}
+        return orchestrate.write_ssp(self.ssp, chosen, motor, **more)
 
 
 class Capture(Only, OfRamp, Over, Stepped, OfController, DriveCommand, OfBoth):
