@@ -29,26 +29,20 @@ def interrupt(*_, **__):
     raise KeyboardInterrupt
 
 
-PLACES = {
-    "orchestrate.response.sweep.SweepJob.work": BEGINS_ANEW,
-    "orchestrate.running.store.DiskStore.finish": INTERRUPTED,
-    "orchestrate.cli.output.ResultFiles.write_tables": (
-        f"interrupted: the result is stored; {RESUME}"
-    ),
-}
-
-
-@pytest.mark.parametrize("place", PLACES)
 def test_an_interrupted_command_says_whether_there_is_anything_to_go_on_from(
-    tmp_path, capsys, monkeypatch, place
+    tmp_path, capsys, monkeypatch
 ):
-    for _ in range(2):  # the second time in a process that has stored something
-        asked = ["sweep", "--eta", "1:1.1:0.1", "--transient", "5", *NO_PLOT]
+    work = "orchestrate.response.sweep.SweepJob.work", BEGINS_ANEW
+    ends = "orchestrate.running.store.DiskStore.finish", INTERRUPTED
+    stored = f"interrupted: the result is stored; {RESUME}"
+    shows = "orchestrate.cli.output.ResultFiles.write_tables", stored
+    for number, (place, told) in enumerate((work, ends, shows, work, shows)):
         with monkeypatch.context() as patch:
             patch.setattr(place, interrupt)
-            assert main([*asked, "--output", str(tmp_path)]) == 130
-        assert capsys.readouterr().err.splitlines()[-1] == PLACES[place]
-        assert main([*asked, "--output", str(tmp_path / "other")]) == 0
+            assert main([*SWEEP, "--output", str(tmp_path / str(number))]) == 130
+        assert capsys.readouterr().err.splitlines()[-1] == told
+        # what follows is told in a process that has stored something
+        assert main([*SWEEP, "--output", str(tmp_path / "other")]) == 0
     capsys.readouterr()
     monkeypatch.setattr("orchestrate.explorer.page.render_page", interrupt)  # without a store
     assert main(["explore", "--no-open", "--output", str(tmp_path / "page.html")]) == 130

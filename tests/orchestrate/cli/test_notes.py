@@ -3,7 +3,6 @@
 import functools
 import json
 import logging
-import re
 import warnings
 from contextlib import nullcontext
 from types import SimpleNamespace
@@ -23,20 +22,29 @@ HALVES = Structure.from_halves(m1=1.5, m2=1.2, f1=40.0, f2=50.0, zeta1=0.01, zet
 PRESSED = HALVES.replace(clearance=-2e-5)
 
 
-def said(ask, caplog):
-    """What is warned of and noted."""
-    with warnings.catch_warnings(record=True) as caught, caplog.at_level(logging.WARNING):
-        warnings.simplefilter("always")
-        list(ask() or ())
-    words = [str(one.message) for one in caught] + [one.getMessage() for one in caplog.records]
-    return " ".join(words)
+@pytest.fixture
+def said(caplog):
+    """Run something, and return what is warned of and noted."""
+
+    def heard(ask):
+        caplog.clear()
+        with warnings.catch_warnings(record=True) as caught, caplog.at_level(logging.WARNING):
+            warnings.simplefilter("always")
+            list(ask() or ())
+        words = [str(one.message) for one in caught]
+        return " ".join([*words, *(one.getMessage() for one in caplog.records)])
+
+    return heard
 
 
 def frequency_notes(hertz, **options):
-    arguments = SimpleNamespace(structure="mine", set=[], **options)
-    return lambda: notes.print_and_warn_of_frequencies(
-        arguments, HALVES, {"frequency": TURN * hertz}
-    )
+    given = SimpleNamespace(structure="mine", set=[], **options)
+    question = {"frequency": TURN * hertz}
+    return lambda: notes.print_and_warn_of_frequencies(given, HALVES, question)
+
+
+def notes_on_rad_s(value):
+    return frequency_notes(value / TURN, frequency=f"{value:g}")
 
 
 def clearance_notes(times):
@@ -45,45 +53,37 @@ def clearance_notes(times):
     return lambda: notes.clearance_notes(PRESSED, given, xr.Dataset())
 
 
-def voltage_notes(*ratios):
-    return lambda: notes.warn_of_unusual_voltage("--voltage x", tuple(6.5 * r for r in ratios), 6.5)
+FAR, UNIT = "are far from it", "own frequencies are 40 and 50 Hz; is --hz meant?"
 
 
 @pytest.mark.parametrize(
     ("ask", "inside", "outside", "words"),
     [
-        (frequency_notes, {"hertz": 24.9 * 40}, {"hertz": 25.1 * 40}, "are far from it"),
-        (frequency_notes, {"hertz": 40 / 24.9}, {"hertz": 40 / 25.1}, "are far from it"),
-        *(
-            (
-                frequency_notes,
-                *({"hertz": r / TURN, "frequency": f"{r:g}"} for r in pair),
-                "own frequencies are 40 and 50 Hz; is --hz meant?",
-            )
-            for pair in ((40 / 1.11, 40 / 1.09), (56.0, 50 / 0.91))  # within a tenth of one
-        ),
-        (clearance_notes, {"times": 199.0}, {"times": 201.0}, "times what this level moves"),
+        (frequency_notes, 24.9 * 40.0, 25.1 * 40.0, FAR),
+        (frequency_notes, 40.0 / 24.9, 40.0 / 25.1, FAR),
+        (notes_on_rad_s, 40.0 / 1.11, 40.0 / 1.09, UNIT),  # within a tenth of one
+        (notes_on_rad_s, 56.0, 50.0 / 0.91, UNIT),
+        (clearance_notes, 199.0, 201.0, "times what this level moves"),
     ],
 )
-def test_each_number_from_which_one_is_asked(caplog, ask, inside, outside, words):
-    assert words not in said(ask(**inside), caplog)
-    caplog.clear()
-    assert words in said(ask(**outside), caplog)
+def test_each_number_from_which_one_is_asked(said, ask, inside, outside, words):
+    assert words not in said(ask(inside)) and words in said(ask(outside))
 
 
-def test_voltages_and_masses_that_are_hardly_meant(caplog):
+def test_voltages_and_masses_that_are_hardly_meant(said):
     for ratios, far in (((0.4, 0.49), 1), ((0.4, 0.51), 0), ((5.1, 9.0), 1), ((4.9, 9.0), 0)):
-        assert ("omega with 6.5 V (eta0 = 1)" in said(voltage_notes(*ratios), caplog)) == far
-    assert notes.heavy_mass_note(HALVES.replace(m2=20.1)) and not notes.heavy_mass_note(
-        HALVES.replace(m2=19.9)
-    )
+        asked = "--voltage x", tuple(6.5 * ratio for ratio in ratios), 6.5
+        words = said(functools.partial(notes.warn_of_unusual_voltage, *asked))
+        assert ("omega with 6.5 V (eta0 = 1)" in words) == far
+    heavy = [bool(notes.heavy_mass_note(HALVES.replace(m2=mass))) for mass in (19.9, 20.1)]
+    assert heavy == [False, True]
     for ratio, unlike in ((2.9, False), (3.1, True), (1.0 / 2.9, False), (1.0 / 3.1, True)):
         beam = Structure.from_halves(m1=1.0, m2=1.0, f1=40.0, f2=ratio * 40.0, zeta1=0.01)
         with pytest.raises(InputError, match="f2 would be") if unlike else nullcontext():
             print_assumptions(beam, "paper", {"f1": 40.0})
 
 
-def test_what_is_not_said(caplog, capsys):
+def test_what_is_not_said(said, capsys):
     """Of ratios, of the halves' own frequencies, of a set that is asked for, of a play."""
     ratios, shown, one = Structure.nondimensional(mu=30.0), xr.Dataset(), np.ones(1)
     wide = Structure.from_halves(m1=1.0, m2=1.0, f1=40.0, f2=TURN * 40.0, zeta1=0.01)
@@ -91,9 +91,8 @@ def test_what_is_not_said(caplog, capsys):
     for beam, name, changed in cases:
         given = SimpleNamespace(structure=name, set=changed, frequency="251.3")
         box = {"frequency": beam.omega * one, "amplitude": one / beam.omega}
-        assert not said(
-            functools.partial(notes.print_and_warn_of_frequencies, given, beam, box), caplog
-        )
+        ask = functools.partial(notes.print_and_warn_of_frequencies, given, beam, box)
+        assert not said(ask)
         assert bool(capsys.readouterr().out) == (name == "paper" and not changed)
     assert not notes.heavy_mass_note(ratios)
     assert notes.box_frequencies_and_amplitudes(ratios, {"eta": 2.0}) == (2.0, 0.25)
@@ -158,31 +157,33 @@ def test_what_is_assumed_or_implausible_is_said_in_one_line(ask, command):
     assert [warned in line for line in done.complaints] == [True] * bool(warned), done.complaints
 
 
-BEAM = Structure.from_file("beam")
-STORED = BEAM.replace(e=0.65)
-HERTZ = ("--over", "hz", "--limits", "14:18")
-COMMANDS = {"branch": HERTZ, "border": ("--over", "hz,e", "--limits", "14:18,0.6:0.8")}
-COMMANDS |= {"manifold": ()}
+STORED = Structure.from_file("beam").replace(e=0.65)
+COMMANDS = {
+    "branch": "--over hz --limits 14:18 --start",
+    "border": "--over hz,e --limits 14:18,0.6:0.8 --start",
+    "manifold": "--start",
+    "explore": "--no-open --branches",
+}
 
 
-@pytest.mark.parametrize("command", [*COMMANDS, "explore"])
+@pytest.mark.parametrize("command", COMMANDS)
 def test_a_stored_result_brings_its_structure(ask, tmp_path, monkeypatch, command):
     """Another one is taken and said in one line."""
     asked, path = [], tmp_path / "stored.nc"
     attributes = {name: float(value) for name, value in STORED.parameters().items()}
     call = {"call": "branch(...)", "over": "frequency", "identity": json.dumps({"question": {}})}
     xr.Dataset({"stable": ("point", [1])}, attrs={**attributes, **call}).to_netcdf(path)
-    place = "orchestrate.explorer.page.explore" if command == "explore" else command
-    function = getattr(orchestrate, command, Structure)
+    place = (
+        "orchestrate.explorer.page.explore" if command == "explore" else f"orchestrate.{command}"
+    )
 
-    @functools.wraps(function)
+    @functools.wraps(getattr(orchestrate, command, Structure))
     def ask_only(structure, **question):
         asked.append(structure)
         raise RuntimeError("not computed")
 
-    monkeypatch.setattr(place if "." in place else f"orchestrate.{place}", ask_only)
-    flag = "--branches" if command == "explore" else "--start"
-    words = (command, flag, path, *(("--no-open",) if command == "explore" else COMMANDS[command]))
+    monkeypatch.setattr(place, ask_only)
+    words = (command, *COMMANDS[command].split(), path)
     assert ask(*words).out == "" and asked.pop() == STORED
     others = [(("--structure", "paper"), Structure(), "m1 = 1.5 there, 1 here")]
     if command != "explore":
@@ -192,9 +193,10 @@ def test_a_stored_result_brings_its_structure(ask, tmp_path, monkeypatch, comman
     for options, structure, difference in others:
         (line,) = ask(*words, *options).out.splitlines()
         assert asked.pop() == structure
-        assert line.startswith(f"{flag} {path} was computed for another structure: {difference}")
+        text = f"{words[-2]} {path} was computed for another structure: {difference}"
+        assert line.startswith(text)
     xr.Dataset({"x": ("t", [1.0])}, attrs={"call": "analyse(...)"}).to_netcdf(path, mode="w")
     if command == "branch":
         ask(*words).complaint(f"--start {path}", "over t, without a structure", "expected an orbit")
-        line = ask("branch", "--eta", "2.5", "--limits", "2.4:2.8").out
-        assert re.fullmatch("", line) and asked.pop() == Structure()
+        assert ask("branch", "--eta", "2.5", "--limits", "2.4:2.8").out == ""
+        assert asked.pop() == Structure()
