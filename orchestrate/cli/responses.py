@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import Any, Literal
 
 from ..errors import InputError
-from ..flags import flag_word
 from ..lazy import xr
 from ..model import Drive, Structure
 from ..units import format_quantity
@@ -151,8 +150,8 @@ def response_lines(data: xr.Dataset) -> Iterator[str]:
         yield from printing.describe(data, f"{sizes} permanent_contact")
         names = "xi_rel_max, impacts_per_period:.4g, multiplicity, multiplicity_decided"
         yield from printing.table_lines(data, names)
-        words = dict.fromkeys(map(flag_word, decided.stack(row=decided.dims)))
-        yield from printing.hint_lines(f"multiplicity_decided: {word}" for word in words)
+        if printing.flag_mask(decided, "undecided").any():
+            yield from printing.hint_lines(["multiplicity_decided: undecided"])
         return
     counted = "impacts_per_period multiplicity_decided permanent_contact"
     yield from printing.describe(data, f"xi_rel_max {sizes} {counted}")

@@ -14,6 +14,7 @@ from matplotlib import image
 
 import orchestrate
 from orchestrate import InputError, Structure, cli
+from orchestrate.cli import responses
 from orchestrate.cli.options import OfBox
 from orchestrate.fmu import OSCILLATOR, find_or_export
 
@@ -177,23 +178,26 @@ def test_a_command_asks_its_function_and_shows_the_answer(ask, tmp_path, monkeyp
 
 
 def test_a_sweep_is_summed_up_by_where_responses_repeat():
-    """Made-up: how often, and the three widest ranges of each kind."""
+    """Made-up: how often, and the three widest ranges of each kind; of few each by itself."""
     kinds = np.repeat([1, 0, 1, 2, 1, 0, 1, 0, 1, 0, 1, 0], [9, 2, 20, 6, 8, 3, 7, 1, 5, 1, 4, 1])
     words = {"flag_values": [0, 1, 2], "flag_meanings": "irregular repeated undecided"}
     numbers = {"xi_rel_max": np.linspace(1.0, 2.0, 67), "multiplicity": np.ones(67, dtype=int)}
     numbers |= {"impacts_per_period": np.ones(67), "eta": 1.0 + 0.01 * np.arange(67)}
     data = xr.Dataset({name: ("eta", values) for name, values in numbers.items()})
     data = data.assign(multiplicity_decided=("eta", kinds, words)).assign_attrs(k1=1.0, m1=1.0)
-    lines = list(cli.responses.Sweep().summary_lines(data))
+    lines = list(responses.Sweep().summary_lines(data))
     assert "largest gap: xi_Rel = 2 at eta = 1.66" in lines
     assert "undecided: 6 (9 %) at eta = 1.31 to 1.36" in lines
     assert any(line.startswith("undecided: ") and "--transient 5000" in line for line in lines)
     ranges = "1 to 1.08, 1.11 to 1.3, 1.37 to 1.44 and 3 shorter ranges"
     assert f"multiplicity 1: 53 (79 %) at eta = {ranges}" in lines
-    few = list(cli.responses.Sweep().summary_lines(data.isel(eta=[0, 9, 31])))
-    assert few[0].split()[:4] == ["eta", "largest", "gap", "impacts_per_period"]
-    assert few[3].split()[-2:] == ["1", "undecided"] and few[4].startswith("undecided: slow")
-    assert len(few) == 5
+    four, five = (
+        list(responses.Sweep().summary_lines(data.isel(eta=at)))
+        for at in ([0, 9, 30, 31], range(27, 32))
+    )
+    assert four[0].split()[:4] == ["eta", "largest", "gap", "impacts_per_period"]
+    assert four[4].split()[-2:] == ["1", "undecided"] and four[5].startswith("undecided: slow")
+    assert len(four) == 6 and "largest gap: xi_Rel = 1.4697 at eta = 1.31" in five
 
 
 TRIVIAL = {  # options, and what is said of what is trivial
