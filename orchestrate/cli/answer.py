@@ -24,7 +24,9 @@ from .printing import describe, impact_lines
 UNIT_OF_OPTION = {name: ALIKE.get(unit, unit) for name, unit in {**UNITS, "eta": "eta"}.items()}
 VARIED = ("eta", "frequency", "level", "values")
 # by structure, or by "" where there is one
-States, Files, Runs = Mapping[str, Any], Mapping[str, ResultFiles], Mapping[str, "xr.Dataset"]
+States = Mapping[str, Any]
+Files = Mapping[str, ResultFiles]
+Runs = Mapping[str, "xr.Dataset"]
 
 
 class Overlay(Options):

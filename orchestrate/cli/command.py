@@ -81,6 +81,7 @@ class Option:
 
     def to_parameter(self, attribute: str, group: cyclopts.Group) -> inspect.Parameter:
         read, called = (self.read, "X") if self.read else reader_and_metavar(self.kind)
+        convert: Any = read and (lambda _, texts: read(texts[-1].keyword or "", texts[-1].value))
         details = cyclopts.Parameter(
             name=None if self.position else self.names,
             help=self.help,
@@ -92,7 +93,7 @@ class Option:
             required=self.needed,
             consume_multiple=self.many or None,
             allow_repeating=True,  # the last one counts
-            converter=read and (lambda _, texts: read(texts[-1].keyword or "", texts[-1].value)),
+            converter=convert,
             n_tokens=1 if read else None,
         )
         return inspect.Parameter(

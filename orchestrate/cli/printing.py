@@ -278,11 +278,11 @@ def format_ranges(data: xr.Dataset, name: str, flags: Any, max_ranges: int = 8) 
 
 def format_largest_gap(data: xr.Dataset) -> str:
     """Format a response's largest gap over a eta^2, as length too if the box's motion is known."""
-    ratio, length = float(data.xi_rel_max), units.unit_of_xi(data)
-    known = length is not None and math.isfinite(float(length))
-    if not known or units.shows_lengths_as_ratios(data):
+    ratio, unit = float(data.xi_rel_max), units.unit_of_xi(data)
+    length = math.nan if unit is None else ratio * float(unit)
+    if not math.isfinite(length) or units.shows_lengths_as_ratios(data):
         return f"xi_Rel = {ratio:.6g}"
-    return f"xi_Rel = {ratio:.6g}, {units.format_quantity(data, ratio * float(length), 'm', '.4g')}"
+    return f"xi_Rel = {ratio:.6g}, {units.format_quantity(data, length, 'm', '.4g')}"
 
 
 def format_with_error(value: float, error: float, form: str = ".5g") -> str:

@@ -133,7 +133,7 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         fmus = [find_or_export(n, "fmi2", self.build_folder, own.get(n)).path for n in job.models]
         start = {"voltage": job.schedule.voltage(0.0), "speed_start": job.speed_start}
         more: Any = {"fmus": fmus, "version": self.ssp_version, **start}
-        return orchestrate.write_ssp(self.ssp, chosen, motor, **more)
+        return orchestrate.write_ssp(str(self.ssp), chosen, motor, **more)
 
 
 class Capture(Only, OfRamp, Over, Stepped, OfController, DriveCommand, OfBoth):
