@@ -165,18 +165,18 @@ class Shake(
         structure, shaker = self.read_and_report_structure(), self.shaker
         if self.read_sensor() is not None:  # before anything is computed
             refuse_unsupported_structure("--sensor", structure)
-        self.excitation = self.read_excitation()
-        if (self.sample_rate or math.inf) < (needed := self.excitation.usual_rate) / 10.0:
+        self.signal = self.read_excitation()
+        if (self.sample_rate or math.inf) < (needed := self.signal.usual_rate) / 10.0:
             text = f"--sample-rate {self.sample_rate:g}: too few samples to show the excitation"
             warn(f"{text}; the default is {needed:g}")
-        question = {"excitation": self.excitation, **self.function_keywords()}
+        question = {"excitation": self.signal, **self.function_keywords()}
         question["shaker"] = None if shaker is None else Shaker.from_file(shaker)
         return structure, question
 
     def write_further_files(self, files: ResultFiles, shown: Runs, results: Runs) -> None:
         if (sensor := self.read_sensor()) is None:
             return
-        excitation = None if self.shaker else self.excitation
+        excitation = None if self.shaker else self.signal
         # one file, one name
         own = "" if self.store else question_digest(sensor.label, sensor.rate)
         for state, data in results.items():
