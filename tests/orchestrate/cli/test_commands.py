@@ -14,7 +14,7 @@ from matplotlib import image
 
 import orchestrate
 from orchestrate import InputError, Structure, cli
-from orchestrate.cli import responses
+from orchestrate.cli import grammar, responses
 from orchestrate.cli.options import OfBox
 from orchestrate.fmu import OSCILLATOR, find_or_export
 
@@ -313,8 +313,10 @@ def test_the_excitation_of_a_file_acts(ask, tmp_path):
     ask(*levels.split()).complaint("--force2: expected one level, --g")
 
 
-def test_curves_over_sweeps_and_maps(ask, tmp_path):
+def test_curves_over_sweeps_and_maps(ask, tmp_path, monkeypatch):
     """All bifurcations of a branch followed, and drawn over what they fit; refused over others."""
+    once = functools.cache(grammar.load_earlier_result)  # its isolated process takes long to start
+    monkeypatch.setattr("orchestrate.cli.answer.load_earlier_result", once)
     path, none, folder = tmp_path / "window.nc", ("--plot", "none"), tmp_path / "results"
     ask("branch", "--eta", "2.6", "--limits", "2.55:2.65", "--store", path, *none).success()
     few = ("sweep", "--eta", "2.55:2.65:0.05", "--transient", "10", "--samples", "4")

@@ -13,7 +13,7 @@ import xarray as xr
 
 import orchestrate
 from orchestrate import Structure
-from orchestrate.cli import notes
+from orchestrate.cli import grammar, notes
 from orchestrate.cli.options import print_assumptions
 from orchestrate.errors import InputError
 
@@ -182,6 +182,8 @@ def test_a_stored_result_brings_its_structure(ask, tmp_path, monkeypatch, comman
         asked.append(structure)
         raise RuntimeError("not computed")
 
+    once = functools.cache(grammar.load_earlier_result)  # its isolated process takes long to start
+    monkeypatch.setattr(grammar, "load_earlier_result", once)
     monkeypatch.setattr(place, ask_only)
     words = (command, *COMMANDS[command].split(), path)
     assert ask(*words).out == "" and asked.pop() == STORED
@@ -195,6 +197,7 @@ def test_a_stored_result_brings_its_structure(ask, tmp_path, monkeypatch, comman
         assert asked.pop() == structure
         text = f"{words[-2]} {path} was computed for another structure: {difference}"
         assert line.startswith(text)
+    once.cache_clear()
     xr.Dataset({"x": ("t", [1.0])}, attrs={"call": "analyse(...)"}).to_netcdf(path, mode="w")
     if command == "branch":
         ask(*words).complaint(f"--start {path}", "over t, without a structure", "expected an orbit")
