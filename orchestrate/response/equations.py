@@ -17,11 +17,11 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
-def in_permanent_contact(states: Floats, gap_offset: ArrayLike = 0.0) -> Flags:
-    """Return, for each state, whether it is permanent contact: no gap and equal velocities."""
-    together = gaps_of_states(states, gap_offset) == 0.0
-    touching: Flags = together & (states[..., 2] == states[..., 3])
-    return touching
+def in_permanent_contact(states: Floats, structure: Structure) -> Flags:
+    """Return, for each state, whether it is permanent contact: faces touch at equal velocities."""
+    gap, stroke = gaps_of_states(states, structure.gap_offset), structure.stroke
+    touching = (gap == 0.0) | ((stroke > 0.0) & np.isclose(gap, stroke, 1e-14, 0.0))
+    return np.asarray(touching & (states[:, 2] == states[:, 3]))
 
 
 def acceleration_of_box(excitation: Excitation, phase: Floats) -> Floats:
@@ -52,9 +52,7 @@ def absolute_accelerations_by_forces(
     if forces is None and not (s.wall or s.stroke):
         return absolute_accelerations_unforced(states, s, touching)
     if touching is None:
-        gap = gaps_of_states(states, s.gap_offset)
-        touching = (gap == 0.0) | ((s.stroke > 0.0) & np.isclose(gap, s.stroke, 1e-14, 0.0))
-        touching &= states[:, 2] == states[:, 3]
+        touching = in_permanent_contact(states, s)
     loads = (0.0 if forces is None else forces) - states[:, :2] * (s.k1, s.k2)
     loads -= states[:, 2:] * (s.d1, s.d2)
     apart, both = loads / (s.m1, s.m2), loads.sum(axis=1) / (s.m1 + s.m2)
@@ -68,7 +66,7 @@ def absolute_accelerations_unforced(
 ) -> Floats:
     """Return the same without forces, wall or stroke, whatever the excitation."""
     if touching is None:
-        touching = in_permanent_contact(states, structure.gap_offset)
+        touching = in_permanent_contact(states, structure)
     rows, flags = np.ascontiguousarray(states, dtype=float), np.ascontiguousarray(touching)
     accelerations, numbers = np.empty((len(rows), 2)), traits_for_loops(structure)
     addresses = (part.ctypes.data for part in (flags, accelerations))

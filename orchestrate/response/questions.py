@@ -17,14 +17,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import NOT_NUMBERS, InputError
-from ..fmu import REST, gaps_of_states, make_fmu_finder
+from ..fmu import REST, gaps_of_states
 from ..lazy import xr
 from ..model import PARAMETERS, Excitation, Structure
 from ..model.arguments import Numbers, checked_numbers, checked_unmasked
 from ..model.ranges import COMPLETE, EXCITATION, LEVEL, PUSHES, RATIO_QUANTITIES
 from ..model.spelling import expected_one_of
 from ..running.job import Job, format_brief, refuse_unsupported_structure
-from ..running.runner import compute_dataset
 from .labels import Variable, parameter_variable, variable
 
 State = tuple[float, ...]
@@ -59,9 +58,7 @@ class Point(NamedTuple):
     @property
     def state_units(self) -> NDArray[np.float64]:
         """Return the units of a state's four coordinates: m, m, m/s, m/s."""
-        length = self.displacement_unit
-        speed = self.structure.omega * length
-        return np.array([length, length, speed, speed])
+        return np.repeat([self.displacement_unit, self.velocity_unit], 2)
 
     def faces_from_states(self, states: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return SI states in the paper's units, by the faces: their difference is the gap."""
@@ -155,11 +152,8 @@ def make_series(
     excitation = {name: value for name, value in excitation_values.items() if value is not None}
     varied = checked_over_values(over, values, excitation)
     require_complete_excitation(excitation.keys() | varied.keys())
-    for name in list(excitation):
-        value = excitation[name]
-        if isinstance(value, tuple):
-            varied[name] = value
-            del excitation[name]
+    varied |= {name: value for name, value in excitation.items() if isinstance(value, tuple)}
+    excitation = {name: value for name, value in excitation.items() if name not in varied}
     listed = (name for name in QUANTITIES if name in varied)
     name = over or next(listed, None) or next(iter(excitation))
     varied = varied or {name: (excitation[name],)}
@@ -413,10 +407,6 @@ class Question(Job, ABC):
         pairs = [(name, value) for name, value in arguments.items() if value not in (None, "")]
         texts += [f"{name}={format_brief(value)}" for name, value in pairs]
         return f"{self.asked}({', '.join(texts)})"
-
-
-def answer_question(job: Question, running: Mapping[str, Any]) -> xr.Dataset:
-    return compute_dataset(job, running, make_fmu_finder(running))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -68,25 +68,16 @@ class ResonanceJob(SweepJob):
 
     def reorder_rows(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
         """Reorder rows to (structure, direction, value), the values as they were given."""
-        ordered = []
-        for part in np.split(values, len(KINDS)):
-            rows = super().reorder_rows(part)
-            ordered.append(rows if self.direction == "both" else rows[None])
-        return np.array(ordered)
+        rows = [super(ResonanceJob, self).reorder_rows(part) for part in np.split(values, 2)]
+        return np.array(rows if self.direction == "both" else np.expand_dims(rows, 1))
 
     def variables(self, table: Table) -> dict[str, Variable]:
-        along, length = (
-            (*DIMENSIONS, self.series.name),
-            self.series.displacement_and_velocity_units[:, 0],
-        )
-        return {**self.threshold_curve(), **response_variables(along, table, length, REPORTED)}
-
-    def threshold_curve(self) -> dict[str, Variable]:
-        """Return the variables of the contact threshold; none where it is not known."""
-        structure = self.structure.as_delaminated()
-        if structure.gap_offset == 0.0 or structure.stroke or self.pushes:  # unknown there
-            return {}
-        return threshold_variables(structure, self.series.name, self.series.frequencies)
+        series, structure = self.series, self.structure.as_delaminated()
+        length = series.displacement_and_velocity_units[:, 0]
+        responses = response_variables((*DIMENSIONS, series.name), table, length, REPORTED)
+        if structure.gap_offset == 0.0 or structure.stroke or self.pushes:
+            return responses  # the contact threshold is not known there
+        return threshold_variables(structure, series.name, series.frequencies) | responses
 
     def coordinates(self) -> dict[str, Variable]:
         name = self.series.name
@@ -117,7 +108,7 @@ class ResonanceJob(SweepJob):
             for index in prominent_maximum_indices(larger, self.prominence):
                 rows.append(curve.isel({self.series.name: index}))
                 irregular.append(inside[index])
-        sizes = {name: [float(row[name]) for row in rows] for name in PEAK_QUANTITIES}
+        sizes = {n: [float(row[n]) for row in rows] for n in PEAK_QUANTITIES}
         text = "whether it lies inside a range of irregular responses, where a maximum is chance"
         return {
             **self.location_variables("peak", rows),

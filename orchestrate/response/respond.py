@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..fmu import Instance, checked_four_numbers, gaps_of_states
+from ..fmu import Instance, checked_four_numbers
 from ..model import Excitation, Structure
 from .multiplicity import Decision, Repetition, find_repetition, lacks_impacts
 from .questions import Point
-from .response_loop import COUNTS, LoopSettings, Responses, response_loop
+from .response_loop import LoopSettings, Responses, response_loop
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,6 @@ class Response:
     permanent_contact: bool  # whether any occurred in them
     frequency: float  # of the excitation, rad/s
     tolerance: float  # within which a state repeats, over the motion's size: see multiplicity
-    gap_offset: float = 0.0  # the gap between unloaded springs, m
     # whether no response without impacts exists: the linear one would open or touch
     has_to_impact: bool = False
     known_multiplicity: int | None = None  # within the tolerance, where it is known already
@@ -46,11 +45,6 @@ class Response:
     def lacks_impacts(self, impacts: float, n: int) -> bool:
         """Return whether no impacts are too few for n periods to last."""
         return bool(lacks_impacts(impacts, n, self.has_to_impact))
-
-    @property
-    def gap_samples(self) -> NDArray[np.float64]:
-        """Return the gap at the samples, m."""
-        return gaps_of_states(self.samples, self.gap_offset)
 
 
 def simulate_response(
@@ -76,19 +70,17 @@ def responses_from(
     multiplicity: Sequence[int] | None = None,
 ) -> Iterator[Response]:
     """Yield the loop's results as responses; their multiplicity is found when it is read."""
-    count = results.states.shape[1]
-    columns = zip(*(results.counts[name].tolist() for name in COUNTS), strict=True)
-    for i, (point, numbers) in enumerate(zip(points, columns, strict=True)):
-        before, contacts_before, touching, after, contacts_after, *_ = numbers
+    impacts = results.counts["impacts_after"] - results.counts["impacts_before"]
+    contact = results.permanent_contact
+    for i, point in enumerate(points):
         yield Response(
             samples=results.states[i],
             end=tuple(results.ends[i].tolist()),
             x_rel_max=float(results.x_rel_max[i]),
-            impacts_per_period=(after - before) / count,
-            permanent_contact=bool(touching) or contacts_after > contacts_before,
+            impacts_per_period=int(impacts[i]) / results.states.shape[1],
+            permanent_contact=bool(contact[i]),
             frequency=point.excitation.frequency,
             tolerance=tolerance,
-            gap_offset=point.structure.gap_offset,
             has_to_impact=bool(results.must_impact[i]),
             known_multiplicity=None if multiplicity is None else multiplicity[i],
         )

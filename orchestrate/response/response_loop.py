@@ -69,6 +69,13 @@ class Responses(NamedTuple):
     counts: dict[str, NDArray[np.int32]]  # by `COUNTS`
     must_impact: NDArray[np.bool_]  # whether no motion without impacts exists
 
+    @property
+    def permanent_contact(self) -> NDArray[np.bool_]:
+        """Whether any occurred in the samples' periods."""
+        names = "touching", "contacts_before", "contacts_after"
+        touching, before, after = (self.counts[name] for name in names)
+        return (touching != 0) | (after > before)
+
     def select(self, indices: NDArray[np.intp]) -> Responses:
         counts = {name: numbers[indices] for name, numbers in self.counts.items()}
         parts = (counts if isinstance(part, dict) else part[indices] for part in self)

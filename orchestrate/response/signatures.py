@@ -15,9 +15,11 @@ from functools import wraps
 from inspect import Parameter
 from typing import Any, NamedTuple, TypeVar, cast
 
+from ..fmu import make_fmu_finder
 from ..lazy import xr
 from ..running.options import refuse_unknown_keywords
-from .questions import Question, answer_question, checked_structure
+from ..running.runner import compute_dataset
+from .questions import Question, checked_structure
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -57,7 +59,7 @@ def question(kind: type[Question]) -> Callable[[Function], Function]:
             names = {field.name for field in fields(kind)}.intersection(call.arguments)
             arguments = {name: call.arguments[name] for name in names}
             job = kind(**{"name": name, **arguments, **changes.fields})
-            return answer_question(job.answering_job(), running)
+            return compute_dataset(job.answering_job(), running, make_fmu_finder(running))
 
         return cast(Function, ask)
 

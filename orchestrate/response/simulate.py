@@ -57,21 +57,16 @@ class SimulateJob(OneMotionQuestion):
         with EventInstance(fmus[OSCILLATOR]) as instance:
             start_motion(instance, *items[0], self.start)
             instance.record_impacts(0.0, float(times[0]))
-            ends = times[[0, -1]]
             loop = instance.event_loop((), OUTPUTS)
-            rows, touching, impacts = loop.run(ends, NO_INPUT, times)
+            rows, touching, impacts = loop.run(times[[0, -1]], NO_INPUT, times)
         columns = dict(zip(OUTPUTS, rows.T, strict=True))
-        columns["in_contact"] = touching
-        columns |= impact_columns(impacts, self.structure)
-        return {**columns, **self.acceleration_columns(rows, touching)}
-
-    def acceleration_columns(
-        self, rows: NDArray[np.float64], touching: NDArray[np.bool_]
-    ) -> dict[str, NDArray[np.float64]]:
-        point, phase = self.items()[0], rows[:, OUTPUTS.index("phase")]
-        box = acceleration_of_box(point.excitation, phase)
-        first, second = absolute_accelerations_at(rows[:, :4], point, phase, touching).T
+        phase = columns["phase"]
+        box = acceleration_of_box(self.excitation, phase)
+        first, second = absolute_accelerations_at(rows[:, :4], items[0], phase, touching).T
         return {
+            **columns,
+            "in_contact": touching,
+            **impact_columns(impacts, self.structure),
             "box_acceleration": box,
             **{"a1_abs": first, "a2_abs": second},
             **{"a1": first - box, "a2": second - box},
@@ -84,17 +79,15 @@ class SimulateJob(OneMotionQuestion):
             "in_contact": yes_or_no("time", table["in_contact"], contact),
             **impact_variables(table),
         }
-        title = f"Motion in time: {self.structure.label()}"
-        return make_dataset(variables, self.coordinates(), title)
-
-    def coordinates(self) -> dict[str, Variable]:
         time = self.communication_times()
         tau, turns = self.structure.omega * time, time / self.excitation.period
-        return {
+        coordinates = {
             "time": variable("time", time, "s", "time from the start"),
             "tau": variable("time", tau, "1", "time in units of 1/omega (4)"),
             "periods_done": variable("time", turns, "1", "time in excitation periods"),
         }
+        title = f"Motion in time: {self.structure.label()}"
+        return make_dataset(variables, coordinates, title)
 
 
 def impact_variables(table: Table) -> dict[str, Variable]:

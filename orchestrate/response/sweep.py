@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
-from ..fmu import OSCILLATOR, Instance
+from ..fmu import OSCILLATOR, Instance, gaps_of_states
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Positive, Transient
@@ -21,7 +21,6 @@ from ..running.store import StoredRows
 from . import labels
 from .multiplicity import DECIDED
 from .questions import Point, StartedSeriesQuestion, Values
-from .respond import DecidedResponse, decisions_from, responses_from
 from .response_loop import PEAKS, LoopSettings, response_loop
 from .signatures import as_given, question
 
@@ -102,22 +101,16 @@ class SweepJob(StartedSeriesQuestion):
         settings = LoopSettings(**arguments, decides=True, **chain)
         with Instance(fmus[OSCILLATOR]) as instance:
             results = response_loop(instance).simulate(points, starts, settings)
-        responses = responses_from(results, points, self.tolerance)
-        rows = [self.table_row(each) for each in decisions_from(results, responses)]
-        table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-        table["end"] = results.ends
-        return {**table, **dict(zip(PEAKS, results.peaks.T, strict=True))}
-
-    def table_row(self, decided: DecidedResponse) -> dict[str, Any]:
-        response, decision, impacts = decided
+        offsets = np.array([point.structure.gap_offset for point in points])
         return {
-            "gap": response.gap_samples,
-            "gap_offset": response.gap_offset,
-            "x_rel_max": response.x_rel_max,
-            "impacts_per_period": impacts,
-            "permanent_contact": response.permanent_contact,
-            "multiplicity": decision.multiplicity,
-            "decided": decision.decided,
+            "gap": gaps_of_states(results.states, offsets.repeat(self.samples)),
+            "gap_offset": offsets,
+            "x_rel_max": results.x_rel_max,
+            "impacts_per_period": results.impacts,
+            "permanent_contact": results.permanent_contact,
+            **{name: results.counts[name] for name in ("multiplicity", "decided")},
+            "end": results.ends,
+            **dict(zip(PEAKS, results.peaks.T, strict=True)),
         }
 
     def boundary_state(self, table: Table) -> bytes:
@@ -154,9 +147,7 @@ class SweepJob(StartedSeriesQuestion):
         return lazy_array_of_rows(numbers.shape, gaps.shape[1], read)
 
     def variables(self, table: Table) -> dict[str, labels.Variable]:
-        along: labels.Dims = (self.series.name,)
-        if self.direction == "both":
-            along = ("direction", self.series.name)
+        along = (*(("direction",) if self.direction == "both" else ()), self.series.name)
         text = "stroboscopic samples of the gap xi_2 - xi_1 (21)"
         units, end = self.series.displacement_and_velocity_units, table["end"]
         end[..., :2] /= units[:, :1]  # in place, of a long sweep
@@ -168,7 +159,7 @@ class SweepJob(StartedSeriesQuestion):
         }
 
     def coordinates(self) -> dict[str, labels.Variable]:
-        numbers = np.arange(self.transient + 1, self.transient + self.samples + 1)
+        numbers = self.transient + np.arange(1, self.samples + 1)
         coordinates = {
             **self.series.coordinates(),
             **labels.nondimensional_state_coordinate(),
@@ -195,9 +186,8 @@ class IndependentStartsJob(SweepJob):
         return list(zip(points, map(tuple, states.tolist()), strict=True))
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
-        return self.compute_table(
-            fmus, [point for point, _ in items], [start for _, start in items]
-        )
+        points, starts = zip(*items, strict=True)
+        return self.compute_table(fmus, points, starts)
 
 
 def response_variables(
@@ -210,9 +200,7 @@ def response_variables(
     return {
         **{name: labels.variable(along, numbers[name], *quantities[name]) for name in quantities},
         "permanent_contact": labels.yes_or_no(along, table["permanent_contact"], contact),
-        "multiplicity": labels.variable(
-            along, table["multiplicity"].astype("i4"), "1", MULTIPLICITY
-        ),
+        "multiplicity": labels.variable(along, table["multiplicity"], "1", MULTIPLICITY),
         "multiplicity_decided": labels.flags(along, table["decided"], HOW_DECIDED, DECIDED),
     }
 
