@@ -94,12 +94,9 @@ def channels(
     rate = setup.sample_rate if sample_rate is None else sample_rate
     table = read_columns_in_process(checked_path("path", path)).with_sample_rate(rate)
     assignment = assign_columns(table, setup.columns)
-    keywords = {"unit": unit, "sensitivity": sensitivity, "scale": scale, "delay": delay}
-    stated = {name: setup.merge_keyword(name, value) for name, value in keywords.items()}
+    stated = setup.merge_keywords(unit=unit, sensitivity=sensitivity, scale=scale, delay=delay)
     used = [name for name in assignment.indices if name != "time"]
-    words = {
-        name: expand_by_channel(name, value, used, ("time",)) for name, value in stated.items()
-    }
+    words = {key: expand_by_channel(key, value, used, ("time",)) for key, value in stated.items()}
     setup = replace(setup, words={**setup.words, **words}, resample=resample or setup.resample)
     listing = dataset_of_columns(table, assignment, setup)
     try:
@@ -139,18 +136,12 @@ def dataset_of_columns(
     rate = table.sample_rate
     if rate is None and "time" in assignment.indices:
         column = table.columns[assignment.indices["time"]]
-        rate = rate_of_time_column(table, column, str(units.get("time", "")))
+        time = times_in_s(table, column, str(units.get("time", "")))
+        if time is not None and time[-1] > time[0]:
+            rate = float((len(time) - 1) / (time[-1] - time[0]))
     title = f"Columns of {Path(table.path).name}"
     words = {"title": title, "sample_rate": rate or 0.0, "refused": ""}
     return xr.Dataset(made, {"column": names}, words)
-
-
-def rate_of_time_column(table: Columns, column: Column, unit: str) -> float | None:
-    """Return the mean sampling rate by a column of times, Hz; None if it has none."""
-    time = times_in_s(table, column, unit)
-    if time is None or not time[-1] > time[0]:
-        return None
-    return float((len(time) - 1) / (time[-1] - time[0]))
 
 
 def quantity_of_column(column: Column, unit: str, role: str) -> str:

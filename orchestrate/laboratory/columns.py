@@ -218,22 +218,18 @@ class ColumnAssignment:
         return f", such as channels={columns}{unit}" if new else ""
 
 
-@dataclass(frozen=True)
-class ChannelInSI:
-    """Hold a channel in SI, and how many derivatives make its acceleration."""
-
-    values: Floats
-    derivatives: int = 0
-
-
 def convert_to_si(
     table: Columns,
     columns: Named,
     unit: ByChannel = None,
     sensitivity: ByChannel = None,
     setup_file: str = "",
-) -> tuple[Floats | None, dict[str, ChannelInSI], dict[str, str]]:
-    """Convert a file's columns to SI: return times in s or None, channels, record attributes."""
+) -> tuple[Floats | None, dict[str, Floats], dict[str, int], dict[str, str]]:
+    """Convert a file's columns to SI.
+
+    Return times in s or None, the channels, how many derivatives make the acceleration of each,
+    and a record's attributes.
+    """
     assignment = assign_columns(table, columns)
     indices = dict(assignment.indices)
     check_unassigned_counters(table, indices)
@@ -253,18 +249,18 @@ def convert_to_si(
     # not all are in volts where some are
     check_units(table.path, used, units, {} if of_all else stated, setup_file)
     check_sensitivities(table.path, used, units, stated)
-    channels = {}
+    channels, derivatives = {}, {}
     for name, column in used.items():
         own = units.get(name, column.unit)
         sensor = stated.get(name, column.sensitivity)
-        factor, derivatives = factor_and_derivatives(
-            column_label(table, column), own, sensor, OF_FORCES if name in FORCES else OF_MOTIONS
-        )
+        label = column_label(table, column)
+        tables = OF_FORCES if name in FORCES else OF_MOTIONS
+        factor, derivatives[name] = factor_and_derivatives(label, own, sensor, tables)
         if name in stated and normalize_unit(own or "V") not in VOLTAGES:
             expected = f"expected volts: a sensitivity does not act on a column in {own}"
-            raise InputError(f"{column_label(table, column)}: sensitivity {sensor}; {expected}")
-        channels[name] = ChannelInSI(scaled_values(table, column, factor), derivatives)
-    return time, channels, read_as | unit_attributes(used, unit, units)
+            raise InputError(f"{label}: sensitivity {sensor}; {expected}")
+        channels[name] = scaled_values(table, column, factor)
+    return time, channels, derivatives, read_as | unit_attributes(used, unit, units)
 
 
 def times_in_s(table: Columns, column: Column, unit: str) -> Floats | None:

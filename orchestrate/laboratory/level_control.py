@@ -16,7 +16,7 @@ from ..lazy import xr
 from ..model import Shaker, Structure
 from ..model.arguments import checked_positive
 from ..response.equations import absolute_accelerations_unforced
-from ..response.labels import variable
+from ..response.labels import states_over_time, variable
 from ..weak_drive.controllers import ControllerState, InputControl
 from ..weak_drive.cosimulate import cosimulate
 from ..weak_drive.polynomials import Cubic
@@ -171,11 +171,11 @@ def shake_on_shaker(
         estimate=False,
         **running,
     )
-    run = run.isel(time=slice(None, None, every))
-    states = np.stack([run[name].values for name in ("x1", "x2", "v1", "v2")], axis=1)
-    one, two = absolute_accelerations_unforced(states, structure, run.in_contact.values).T
-    for name, values in (("a1_abs", one), ("a2_abs", two)):
-        text = f"acceleration of mass {name[1]} in space, between impacts"
-        run[name] = variable("time", values, "m/s2", text)
+    run = run.isel(time=np.s_[::every])
+    contact = run.in_contact.values
+    felt = absolute_accelerations_unforced(states_over_time(run), structure, contact)
+    for number, values in enumerate(felt.T, 1):
+        text = f"acceleration of mass {number} in space, between impacts"
+        run[f"a{number}_abs"] = variable("time", values, "m/s2", text)
     title = f"Shaken by {sine.description} on a shaker: {structure.label()}"
     return run.assign_attrs(title=title, excitation=sine.label)

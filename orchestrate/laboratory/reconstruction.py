@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..lazy import xr
 from ..model import Structure
+from ..response.labels import states_over_time
 from .analog_filter import PolynomialSignal
 from .pieces import Floats, Pieces
 from .record import FORCES
@@ -52,7 +53,7 @@ class Motion:
             structure,
             pieces,
             history.time.values - begin,
-            np.stack([history[name].values for name in ("x1", "x2", "v1", "v2")], axis=1),
+            states_over_time(history),
             history.in_contact.values.astype(bool),
             struck[kept] - begin,
             history.impulse.values[kept],
@@ -62,10 +63,11 @@ class Motion:
         )
 
     def _driving_series(self, channel: str, times: Floats) -> Floats:
-        """Compute a channel of the excitation and its derivatives, shape (n, 4)."""
-        if channel != self.drives:
-            return np.zeros((len(times), 4))
-        return self.pieces.derivatives_at(times)
+        """Compute a channel of the excitation and its derivatives, shape (ORDER, n)."""
+        derivatives = np.zeros((ORDER, len(times)))
+        if channel == self.drives:
+            derivatives[:4] = self.pieces.derivatives_at(times).T
+        return derivatives
 
     def displacement_series(self, states: Floats, touching: Flags, times: Floats) -> Floats:
         """Compute displacements and their derivatives, shape (ORDER + 2, 2, n), by (6)."""
@@ -79,15 +81,13 @@ class Motion:
 
     def box_series(self, times: Floats) -> Floats:
         """Compute the box's acceleration and its derivatives, shape (ORDER, n)."""
-        derivatives = pad_to_order(self._driving_series("box_acceleration", times))
+        derivatives = self._driving_series("box_acceleration", times)
         derivatives[0] += self.steady
         return derivatives
 
     def force_series(self, times: Floats) -> Floats:
         """Compute the forces on both masses and their derivatives, shape (ORDER, 2, n)."""
-        return np.stack(
-            [pad_to_order(self._driving_series(name, times)) for name in FORCES], axis=1
-        )
+        return np.stack([self._driving_series(name, times) for name in FORCES], axis=1)
 
     def mass_accelerations(
         self, x: Floats, v: Floats, touching: Flags, forces: ArrayLike = 0.0
@@ -181,13 +181,6 @@ def steady_box_acceleration(history: xr.Dataset) -> float:
     return float(history.attrs.get("box_acceleration", 0.0))
 
 
-def pad_to_order(derivatives: Floats) -> Floats:
-    """Return a cubic's derivatives at n times as the first of ORDER rows, with zeros below."""
-    padded = np.zeros((ORDER, len(derivatives)))
-    padded[:4] = derivatives.T
-    return padded
-
-
 def evaluate_taylor(series: Floats, lengths: Floats) -> Floats:
     """Evaluate Taylor series of two motions at n times after expansion; return shape (2, n)."""
     values = np.zeros(series.shape[1:])
@@ -238,15 +231,9 @@ def solve_smooth_accelerations(motion: Motion, sample_rate: float) -> SmoothAcce
     states, touching, error = integrate_between_samples(motion, nodes, releases)
     drive = PolynomialSignal(starts, nodes[1:], motion.pieces.derivatives_at(starts))
     series = motion.displacement_series(states, touching, starts)
-    forces = motion.force_series(starts)
-    felt = np.stack(
-        [
-            motion.mass_accelerations(
-                series[n], series[n + 1], touching, forces[n] if n < ORDER else 0.0
-            )
-            for n in range(ORDER + 1)
-        ]
-    )
+    forces = [*motion.force_series(starts), 0.0]  # no derivative of the last order
+    parts = zip(series[:-1], series[1:], forces, strict=True)
+    felt = np.stack([motion.mass_accelerations(x, v, touching, force) for x, v, force in parts])
     felt[0] -= motion.steady
     one, two = (PolynomialSignal(starts, nodes[1:], felt[:, i].T) for i in (0, 1))
     return SmoothAccelerations(times, drive, one, two, error)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import csv
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from io import StringIO
 from itertools import product
 from pathlib import Path
@@ -93,8 +93,10 @@ def detect_dialect(path: Path, lines: list[str]) -> Dialect:
                 dialect = Dialect(separator, decimal, number)
                 texts = text_columns_of_row(dialect, lines[number:], has_texts)
                 if texts is not None:
-                    found = replace(dialect, texts=texts)
-                    return settle_decimal_sign(found, lines[number : number + 50])
+                    # whole numbers in the first line leave both decimal signs possible
+                    near = "".join(lines[number : number + 50])
+                    comma = separator != "," and "," in near and "." not in near
+                    return Dialect(separator, "," if comma else decimal, number, texts)
     named = (
         f"row {number}: {describe_text(field.strip())}"
         for number, line in enumerate(lines, 1)
@@ -119,19 +121,9 @@ def text_columns_of_row(
     full, others = sum(map(bool, row)) - len(texts[0]), len(row) - len(texts[0])
     is_row = (len(row) > 1 or dialect.separator == " ") and full >= max(0.5 * others, 1)
     if texts[0]:
-        same = all(
-            len(r) == len(row) and one == texts[0] for r, one in zip(rows, texts, strict=True)
-        )
+        same = {len(r) for r in rows} == {len(row)} and all(one == texts[0] for one in texts)
         is_row = is_row and has_texts and same and all(TEXT.fullmatch(row[i]) for i in texts[0])
     return frozenset(texts[0]) if is_row else None
-
-
-def settle_decimal_sign(dialect: Dialect, lines: list[str]) -> Dialect:
-    """Choose the decimal comma if whole numbers in the first line left both readings possible."""
-    if dialect.separator == "," or dialect.decimal == ",":
-        return dialect
-    comma = any("," in line for line in lines) and not any("." in line for line in lines)
-    return replace(dialect, decimal=",") if comma else dialect
 
 
 def column_names_and_units(lines: list[str], dialect: Dialect, count: int) -> list[tuple[str, str]]:

@@ -7,7 +7,6 @@ import stat
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -115,32 +114,28 @@ def read_record(
     path, setup = checked_path("path", path), ChannelSetup.from_argument(channels)
     rate = setup.sample_rate if sample_rate is None else sample_rate
     table, kind = read_columns_in_process(path).with_sample_rate(rate), file_kind(path)
-    if kind == "wav" and not setup.merge_keyword("scale", scale):
+    stated = setup.merge_keywords(unit=unit, sensitivity=sensitivity, scale=scale, delay=delay)
+    if kind == "wav" and not stated["scale"]:
         raise InputError(f"{path}: no scale=; expected for a WAV file: m/s2 at its full scale")
-    keywords = {"unit": unit, "sensitivity": sensitivity, "scale": scale, "delay": delay}
-    stated = {name: setup.merge_keyword(name, value) for name, value in keywords.items()}
-    unit = stated["unit"]
-    time, read, read_as = convert_to_si(
-        table, setup.columns, unit, stated["sensitivity"], setup.file
-    )
+    units = stated["unit"], stated["sensitivity"]
+    time, values, derivatives, read_as = convert_to_si(table, setup.columns, *units, setup.file)
     if time is None and table.sample_rate is None:
         raise InputError(f"{path}: no column of times; expected one, or sample_rate=")
     words = {"title": f"Record {path.name}", "source": path.name, **table.attributes}
-    if kind != "netcdf" or unit is not None:  # it says how it was read the first time
+    if kind != "netcdf" or stated["unit"] is not None:  # it says how it was read the first time
         words |= read_as
     reading = ReadingOptions(
         table.first_row,
         resample or setup.resample,
-        {name: one.derivatives for name, one in read.items()},
-        number_by_channel("scale", stated["scale"], list(read), SMALLEST),
-        number_by_channel("delay", stated["delay"], list(read)),
+        derivatives,
+        number_by_channel("scale", stated["scale"], list(values), SMALLEST),
+        number_by_channel("delay", stated["delay"], list(values)),
     )
-    values = {name: one.values for name, one in read.items()}
     try:
         made = make_record(time, values, table.sample_rate, words, reading)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    for name in read:
+    for name in values:
         made[name].attrs |= setup.sensor_attributes(name)
     return made
 
@@ -230,19 +225,16 @@ def read_netcdf(path: Path) -> Columns:
         names = dict(zip(over_time, over_time, strict=True))
         if "a1_abs" in file.variables:  # a result of shake
             if "impact" in file.dimensions and file.dimensions["impact"].size:
-                text = (
-                    "expected what sensors read of it: shake --sensor HZ, or measure, writes that"
-                )
-                raise InputError(f"{path}: simulated accelerations leave out the impacts; {text}")
+                text = "simulated accelerations leave out the impacts"
+                expected = "what sensors read of it: shake --sensor HZ, or measure, writes that"
+                raise InputError(f"{path}: {text}; expected {expected}")
             names = {"time": "time", **{stored: name for name, stored in NAMES_IN_RESULTS.items()}}
             names |= {name: name for name in FORCES}
-        columns = [
-            Column(
-                name, str(getattr(one, "units", "")), np.ma.filled(one[...].astype(float), np.nan)
-            )
-            for stored, name in names.items()
-            if (one := over_time.get(stored)) is not None and one.dtype.kind in "iuf"
-        ]
+        columns = []
+        for stored, name in names.items():
+            if (one := over_time.get(stored)) is not None and one.dtype.kind in "iuf":
+                values = np.ma.filled(one[...].astype(float), np.nan)
+                columns.append(Column(name, str(getattr(one, "units", "")), values))
         attributes = {name: file.getncattr(name) for name in file.ncattrs()}
     rate = attributes.get("sample_rate")
     rate = None if rate is None else float(rate)
@@ -269,36 +261,29 @@ def read_wav(path: Path) -> Columns:
     return Columns(str(path), made, float(rate))
 
 
-READERS: dict[str, Callable[..., Columns]] = {
-    **{"csv": read_csv, "uff": read_uff, "mat": read_mat, "netcdf": read_netcdf},
-    **{"wav": read_wav, "lvm": read_lvm, "tdms": read_tdms},
+READERS: dict[str, tuple[Callable[..., Columns], str]] = {  # and what they expect
+    "csv": (read_csv, "columns of numbers"),
+    "uff": (read_uff, "a universal file that is whole"),
+    "mat": (read_mat, "a MAT file that is whole"),
+    "netcdf": (read_netcdf, "a NetCDF file that is whole"),
+    "wav": (read_wav, "a WAV file that is whole"),
+    "lvm": (read_lvm, "a .lvm file that is whole"),
+    "tdms": (read_tdms, "a .tdms file that is whole"),
 }
-EXPECTED = {"csv": "expected columns of numbers"} | {
-    kind: f"expected a {name} file that is whole"
-    for kind, name in {
-        **{"uff": "universal", "mat": "MAT", "netcdf": "NetCDF", "wav": "WAV"},
-        **{"lvm": ".lvm", "tdms": ".tdms"},
-    }.items()
-}
-COMPILED = (
-    "mat",
-    "netcdf",
-)  # readers that a damaged file may harm so that they misread the next one
+# readers that a damaged file may harm so that they misread the next one
+COMPILED = ("mat", "netcdf")
 
 
 def read_columns_in_process(path: Path, *arguments: object) -> Columns:
     """Read the columns of a file in a process of its own; make names and texts printable."""
     kind = file_kind(path)
     check_readable_size(path)
-    reader, keep = READERS[kind], kind not in COMPILED
-    content = read_in_process(reader, path, *arguments, expected=EXPECTED[kind], keep_process=keep)
-    columns = [
-        Column(**{n: printable_if_text(one) for n, one in each.items()})
-        for each in content["columns"]
-    ]
+    (reader, expected), keep = READERS[kind], kind not in COMPILED
+    expected = f"expected {expected}"
+    content = read_in_process(reader, path, *arguments, expected=expected, keep_process=keep)
+    columns = []
+    for column in content["columns"]:
+        texts = {key: one for key, one in column.items() if isinstance(one, str)}
+        printable = {key: printable_line(text, MOST_LETTERS) for key, text in texts.items()}
+        columns.append(Column(**column | printable))
     return Columns(**content | {"path": str(path), "columns": columns})
-
-
-def printable_if_text(value: Any) -> Any:
-    """Return a text as a short line without control characters, anything else as it is."""
-    return printable_line(value, MOST_LETTERS) if isinstance(value, str) else value

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..errors import InputError
 from ..lazy import xr
 from ..response.equations import absolute_accelerations_unforced
+from ..response.labels import STATE, states_over_time
 from .record import record
 from .sensors import structure_of_history
 
-STATE = ("x1", "x2", "v1", "v2")
 NEEDED = ("time", *STATE, "box_acceleration", "angle")
 
 
@@ -53,8 +51,7 @@ def record_of_run(run: xr.Dataset) -> xr.Dataset:
         expected = "expected an answer of passage, which keeps every step; couple keeps revolutions"
         raise InputError(f"run: no {' and '.join(NEEDED[-2:])} over the time; {expected}")
     structure = structure_of_history(run, NEEDED)
-    states = np.stack([run[name].values for name in STATE], axis=-1)
-    first, second = absolute_accelerations_unforced(states, structure).T
+    first, second = absolute_accelerations_unforced(states_over_time(run), structure).T
     return record(
         time=run.time.values,
         box_acceleration=run.box_acceleration.values,

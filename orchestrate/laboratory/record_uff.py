@@ -6,14 +6,13 @@ import logging
 import math
 import re
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from ..errors import InputError
 from .columns import Column, Columns, Floats
-from .record_labview import missing_package_error
+from .record_labview import needed_package
 
 Dataset = dict[str, Any]  # as pyuff gives it
 log = logging.getLogger(__name__)
@@ -23,66 +22,62 @@ FUNCTIONS = {  # of dataset 58, by their number
     **{5: "transmissibility", 6: "coherence", 7: "auto correlation", 8: "cross correlation"},
     **{9: "power spectral density", 10: "energy spectral density", 12: "spectrum"},
 }
-NO_LABELS = ("", "none")
 NOTE = "sample_rate = {!r}, start = {!r}"  # a heading has six digits of both
 NOTED = re.compile(r"sample_rate = (\S+), start = (\S+)")
-
-
-def import_pyuff() -> ModuleType:
-    """Import the package pyuff; raise with the remedy if it is not installed."""
-    try:
-        import pyuff
-    except ImportError:
-        raise missing_package_error("pyuff", "universal files") from None
-    return pyuff
 
 
 def read_uff(path: Path) -> Columns:
     """Read accelerations over time; other datasets are skipped, with a line in the log."""
     if not path.read_bytes().rstrip().endswith(b"    -1"):
         raise InputError(f"{path}: no '    -1' at its end; expected a universal file that is whole")
-    pyuff = import_pyuff()
+    with needed_package("pyuff", "universal files"):
+        import pyuff
     file = pyuff.UFF(str(path))
-    kinds = [int(kind) for kind in file.get_set_types()]
-    functions = [(i, file.read_sets(i)) for i, kind in enumerate(kinds) if kind == 58]
-    return columns_over_time(path, kinds, functions)
-
-
-def columns_over_time(
-    path: Path, kinds: list[int], functions: list[tuple[int, Dataset]]
-) -> Columns:
-    """Return the datasets over time as columns; log those that are skipped."""
-    used = [(i, one) for i, one in functions if is_real_and_over_time(one)]
-    for i in sorted({*range(len(kinds))} - {i for i, _ in used}):
-        log.info(
-            "%s: dataset %d, number %d, is no real function of time; skipped", path, kinds[i], i
-        )
+    kinds, used = [], {}
+    for number, kind in enumerate(map(str, map(int, file.get_set_types()))):
+        dataset = file.read_sets(number) if kind == "58" else {}
+        function = int(dataset.get("func_type", 0))
+        if dataset and is_real_and_over_time(dataset, function):
+            used[number] = dataset
+            continue
+        text = "%s: dataset %s, number %d, is no real function of time; skipped"
+        log.info(text, path, kind, number)
+        name = f" ({FUNCTIONS.get(function, f'function {function}')})" if dataset else ""
+        kinds.append(f"{kind}{name}")
     if not used:
-        types = {i: int(one.get("func_type", 0)) for i, one in functions}
-        named = [
-            f"{kind} ({FUNCTIONS.get(types[i], f'function {types[i]}')})"
-            if i in types
-            else f"{kind}"
-            for i, kind in enumerate(kinds)
-        ]
-        there = ", ".join(dict.fromkeys(named)) or "none"
+        there = ", ".join(dict.fromkeys(kinds)) or "none"
         raise InputError(f"{path}: datasets {there}; expected a dataset 58 of time response")
-    number, first = used[0]
-    for i, one in used:
-        check_point_count(path, i, one)
-        if not np.array_equal(one["x"], first["x"]):
+    number, first = next(iter(used.items()))
+    for i, one in used.items():
+        if len(one["data"]) != (announced := int(one["num_pts"])):
+            text = f"{len(one['data'])} values; expected {announced}, as its heading says"
+        elif not np.array_equal(one["x"], first["x"]):
             text = f"other times than number {number}; expected the same"
-            raise InputError(f"{path}: dataset 58, number {i}: {text}")
-    label = str(first.get("abscissa_axis_units_lab", "")).strip()
-    time = Column("time", "s" if label.lower() in NO_LABELS else label, time_values(first))
-    return Columns(str(path), [time, *(column_from_dataset(i, one) for i, one in used)])
+        else:
+            continue
+        raise InputError(f"{path}: dataset 58, number {i}: {text}")
+    time = Column("time", label_of(first, "abscissa_axis_units_lab") or "s", time_values(first))
+    columns = [
+        Column(
+            label_of(one, "id1") or f"{one.get('rsp_node', i)}:{one.get('rsp_dir', 0)}",
+            label_of(one, "ordinate_axis_units_lab"),
+            np.asarray(one["data"], float),
+        )
+        for i, one in used.items()
+    ]
+    return Columns(str(path), [time, *columns])
 
 
-def is_real_and_over_time(dataset: Dataset) -> bool:
+def is_real_and_over_time(dataset: Dataset, function: int) -> bool:
     kind = int(dataset.get("abscissa_spec_data_type", TIME))
-    time_response = int(dataset.get("func_type", 0)) == TIME_RESPONSE
-    over_time = kind == TIME or (kind == 0 and time_response)
+    over_time = kind == TIME or (kind == 0 and function == TIME_RESPONSE)
     return over_time and not np.iscomplexobj(dataset["data"])
+
+
+def label_of(dataset: Dataset, field: str) -> str:
+    """Return a line of a dataset's heading; empty where the file says that there is none."""
+    text = str(dataset.get(field, "")).strip()
+    return "" if text.lower() == "none" else text
 
 
 def time_values(dataset: Dataset) -> Floats:
@@ -110,28 +105,10 @@ def roundest_rate_for_step(step: float) -> float:
     return 1.0 / step
 
 
-def check_point_count(path: Path, number: int, dataset: Dataset) -> None:
-    """Check that a dataset has as many values as its heading announces."""
-    announced = int(dataset["num_pts"])
-    if len(dataset["data"]) != announced:
-        text = f"{len(dataset['data'])} values; expected {announced}, as its heading says"
-        raise InputError(f"{path}: dataset 58, number {number}: {text}")
-
-
-def column_from_dataset(number: int, dataset: Dataset) -> Column:
-    """Convert a dataset to a column, named by its first line or by its node and direction."""
-    name = str(dataset.get("id1", "")).strip()
-    if name.lower() in NO_LABELS:
-        name = f"{dataset.get('rsp_node', number)}:{dataset.get('rsp_dir', 0)}"
-    unit = str(dataset.get("ordinate_axis_units_lab", "")).strip()
-    return Column(
-        name, "" if unit.lower() in NO_LABELS else unit, np.asarray(dataset["data"], float)
-    )
-
-
 def write_uff(path: Path, columns: list[Column], sample_rate: float, binary: bool) -> None:
     """Write columns after the first, which is the time, as datasets 58 or 58b."""
-    pyuff = import_pyuff()
+    with needed_package("pyuff", "universal files"):
+        import pyuff
     time, *channels = columns
     datasets = [
         pyuff.prepare_58(

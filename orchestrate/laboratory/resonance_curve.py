@@ -15,7 +15,7 @@ from ..errors import InputError
 from ..lazy import xr
 from ..response.labels import variable
 from .columns import RATIO_UNITS
-from .conversion import ACCELERATIONS, LENGTHS, SPEEDS, normalize_unit
+from .conversion import OF_MOTIONS, normalize_unit
 from .pieces import Floats
 from .record import array_of_numbers
 
@@ -24,7 +24,6 @@ CURVE_ORDERS = (1.0, 2.0, 3.0)
 FEWEST_POINTS = 10
 MOST_POINTS = 2000
 DIRECTIONS = ("up", "down")
-QUANTITIES = (ACCELERATIONS, SPEEDS, LENGTHS)  # by the derivatives that lack to the first
 
 
 def resonance_curve(
@@ -173,15 +172,13 @@ def make_curve(
         scale = factor * np.array(CURVE_ORDERS)[:, None] ** frequency_power_of_unit(unit)
         amplitude[number] = scale * columns.face_orders(name)[:, known]
         if name in columns.floors:
-            given = columns.broadcast_to_frequencies(f"floor of {name}", columns.floors[name])[
-                known
-            ]
-            check_positive(f"floor of {name}", given, None, allow_zero=True)
-            floor[number] = factor * given
+            label = f"floor of {name}"
+            own = columns.broadcast_to_frequencies(label, columns.floors[name])[known]
+            check_positive(label, own, None, allow_zero=True)
+            floor[number] = factor * own
         if name in columns.phases:
-            phase[number] = columns.broadcast_to_frequencies(
-                f"phase of {name}", columns.phases[name]
-            )[known]
+            label = f"phase of {name}"
+            phase[number] = columns.broadcast_to_frequencies(label, columns.phases[name])[known]
     phase, sign = make_lags_negative(amplitude[:, 0], phase)
     text = "peak amplitude of orders, relative to the base" if relative else "peak amplitude"
     over = ("channel", "frequency")
@@ -218,9 +215,8 @@ def complete_rows(columns: CurveColumns) -> NDArray[np.bool_]:
     """Return a mask of the rows with frequency, level and order 1 of each face; warn of others."""
     if columns.frequency.ndim != 1:
         raise InputError(f"frequency: {columns.frequency.ndim} dimensions; expected a list")
-    known = np.isfinite(columns.frequency) & np.isfinite(
-        columns.broadcast_to_frequencies("level", columns.level)
-    )
+    level = columns.broadcast_to_frequencies("level", columns.level)
+    known = np.isfinite(columns.frequency) & np.isfinite(level)
     for name in columns.amplitudes:
         known &= np.isfinite(columns.face_orders(name)[0])
     if text := describe_dropped_rows(known, columns.first_row):
@@ -277,7 +273,8 @@ def checked_direction(frequency: Floats, direction: str | None) -> str:
 
 def frequency_power_of_unit(unit: str) -> int:
     """Return the power of the frequency that makes a unit's quantity an acceleration."""
-    return next((n for n, units in enumerate(QUANTITIES) if normalize_unit(unit) in units), 0)
+    plain = normalize_unit(unit)
+    return next((n for n, units in OF_MOTIONS.items() if plain in units), 0)
 
 
 def acceleration_factor(name: str, unit: str, frequency: Floats, level: Floats) -> Floats:
@@ -285,11 +282,11 @@ def acceleration_factor(name: str, unit: str, frequency: Floats, level: Floats) 
     plain, power = normalize_unit(unit), frequency_power_of_unit(unit)
     if plain in RATIO_UNITS:
         return level.copy()
-    if plain not in QUANTITIES[power]:
+    if plain not in OF_MOTIONS[power]:
         text = f"unit = {unit!r}" if unit else "no unit"
         names = "m/s2, g, mm/s, m, mm, um, or 1 for a transmissibility"
         raise InputError(f"{name}: {text}; expected one such as {names}: give it by unit=")
-    return np.asarray(QUANTITIES[power][plain] * (TURN * frequency) ** power)
+    return np.asarray(OF_MOTIONS[power][plain] * (TURN * frequency) ** power)
 
 
 def make_lags_negative(amplitude: Floats, phase: Floats) -> tuple[Floats, str]:

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..errors import NOT_NUMBERS, InputError
+from ..errors import InputError
 from ..lazy import xr
-from ..model.arguments import checked_unmasked
 from .pieces import Pieces
+from .record import checked_finite_list
 from .signals import HERTZ, MOST_PIECES, ExcitationSignal, checked_quantity
 
 
@@ -35,20 +35,10 @@ class Sampled(ExcitationSignal):
 
     def __post_init__(self) -> None:
         put = object.__setattr__
-        checked_unmasked("acceleration", self.acceleration)
-        try:
-            values = np.asarray(self.acceleration, dtype=float)
-        except NOT_NUMBERS:
-            raise InputError("acceleration: expected a list of numbers, in m/s2") from None
-        if values.ndim != 1 or not 4 <= len(values) <= MOST_PIECES:
-            shape = "x".join(map(str, values.shape)) or "one"
-            raise InputError(
-                f"acceleration: {shape} values; expected a list of 4 to {MOST_PIECES} numbers"
-            )
-        if not np.isfinite(values).all():
-            wrong = int(np.flatnonzero(~np.isfinite(values))[0])
-            text = "expected finite numbers"
-            raise InputError(f"acceleration[{wrong}] = {values[wrong]}: {text}")
+        values = checked_finite_list("acceleration", self.acceleration)
+        if len(values) > MOST_PIECES:
+            text = f"{len(values)} values; expected a list of at most {MOST_PIECES} numbers"
+            raise InputError(f"acceleration: {text}")
         put(self, "acceleration", tuple(values.tolist()))
         put(self, "sample_rate", checked_quantity(HERTZ, "sample_rate", self.sample_rate))
         put(self, "duration", (len(values) - 1) / self.sample_rate)

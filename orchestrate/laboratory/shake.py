@@ -61,12 +61,8 @@ class ShakeJob(Question):
         return cached_pieces(self.excitation, self.accuracy)
 
     def parameters(self) -> dict[str, Any]:
-        parameters = super().parameters()
-        parameters["excitation"] = {
-            "kind": type(self.excitation).__name__,
-            **parameters["excitation"],
-        }
-        return parameters
+        parameters, kind = super().parameters(), type(self.excitation).__name__
+        return parameters | {"excitation": {"kind": kind, **parameters["excitation"]}}
 
     def items(self) -> Sequence[int]:
         return range(len(self.pieces.derivatives))
@@ -134,10 +130,7 @@ class ShakeJob(Question):
         return make_dataset(
             {
                 **{name: variable("time", table[name], *IN_TIME[name]) for name in columns},
-                **{
-                    name: variable("time", table[name], unit_of_channel(name), CHANNELS[name])
-                    for name in acting
-                },
+                **{n: variable("time", table[n], unit_of_channel(n), CHANNELS[n]) for n in acting},
                 "in_contact": yes_or_no("time", table["in_contact"], contact),
                 **impact_variables(table),
                 "excitation_error": variable((), self.pieces.error, unit, error),
@@ -156,8 +149,7 @@ def transient_time(structure: Structure) -> float:
     alone = ((structure.m1, structure.k1, structure.d1), (structure.m2, structure.k2, structure.d2))
     free = alone[:1] if structure.wall else (*alone, both)
     oscillators = (both,) if structure.bonded else free
-    rates = [float(-np.roots((m, d, k)).real.max()) for m, k, d in oscillators]
-    slowest = min(rates)
+    slowest = min(float(-np.roots((m, d, k)).real.max()) for m, k, d in oscillators)
     return -math.log(DECAYED) / slowest if slowest > 0.0 else math.inf
 
 
@@ -246,29 +238,19 @@ def shake(
     if not isinstance(excitation, ExcitationSignal):
         kinds = "expected a SweptSine, SteppedSine, Random, Shock, Sampled or Hammer, or a sum"
         raise InputError(f"excitation = {excitation!r}: {kinds}")
-    rate = checked_positive(
-        "sample_rate", excitation.usual_rate if sample_rate is None else sample_rate
-    )
+    rate = excitation.usual_rate if sample_rate is None else sample_rate
+    rate = checked_positive("sample_rate", rate)
     if rate * excitation.duration > MOST_SAMPLES:
-        most = MOST_SAMPLES / excitation.duration
-        raise InputError(
-            f"sample_rate = {rate!r} Hz: expected at most {most:.3g} for that duration"
-        )
+        text = f"expected at most {MOST_SAMPLES / excitation.duration:.3g} for that duration"
+        raise InputError(f"sample_rate = {rate!r} Hz: {text}")
     start = checked_state("start", start, checked_structure(structure))
     beside = Excitation(frequency=frequency or structure.omega, amplitude=0.0, **pushes)
-    check_forces(structure, beside, bool(frequency), excitation.drives)
+    for force in FORCES:
+        if (value := getattr(beside, force)) and not frequency:
+            text = "without its frequency; expected frequency= too"
+            raise InputError(f"{force} = {value!r}: {text}")
+    if beside.force2 or excitation.drives == "force2":
+        structure.require_mass_2("force2")
+    beside.check(structure)
     name = f"shake_{type(excitation).__name__}_{structure.label()}"
     return as_given(name=name, sample_rate=rate, start=start)
-
-
-def check_forces(
-    structure: Structure, additional: Excitation, has_frequency: bool, drives: str
-) -> None:
-    """Raise ``InputError`` unless forces have a mass to act on, and harmonic ones a frequency."""
-    for name in FORCES:
-        value = getattr(additional, name)
-        if value and not has_frequency:
-            raise InputError(f"{name} = {value!r}: without its frequency; expected frequency= too")
-    if additional.force2 or drives == "force2":
-        structure.require_mass_2("force2")
-    additional.check(structure)

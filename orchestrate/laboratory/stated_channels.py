@@ -72,14 +72,17 @@ class ChannelSetup:
                     words.setdefault(key, {})[name] = value
         return cls(columns or None, words, **of_all)
 
-    def merge_keyword(self, name: str, argument: ByChannel) -> ByChannel:
-        """Return a keyword of :func:`.read_record`: the argument, completed by the setup."""
-        known = self.words.get(name, {})
-        if argument is None or not known:
-            return known or None if argument is None else argument
-        if isinstance(argument, Mapping) or (isinstance(argument, str) and "=" in argument):
-            return {**known, **expand_by_channel(name, argument, (), ("time", *CHANNELS))}
-        return argument
+    def merge_keywords(self, **keywords: ByChannel) -> dict[str, ByChannel]:
+        """Return keywords of :func:`.read_record` by name, each completed by the setup."""
+        merged = dict(keywords)
+        for name in self.words.keys() & keywords.keys():
+            argument, known = keywords[name], self.words[name]
+            if argument is None:
+                merged[name] = known
+            elif isinstance(argument, Mapping) or (isinstance(argument, str) and "=" in argument):
+                own = expand_by_channel(name, argument, (), ("time", *CHANNELS))
+                merged[name] = {**known, **own}
+        return merged
 
     def sensor_attributes(self, channel: str) -> dict[str, str]:
         """Return what is stated of a channel's sensor, as attributes of the channel."""

@@ -57,12 +57,9 @@ class SweptSine(signals.Sine):
         checked_word("spacing", self.spacing, ("linear", "log"))
         if self.first == self.last:
             raise InputError(f"last = {self.last!r} Hz: expected another frequency than first")
-        low, high = sorted((self.first, self.last))
-        put(
-            self,
-            "acceleration",
-            signals.checked_level("acceleration", self.acceleration, low, high),
-        )
+        ends = sorted((self.first, self.last))
+        level = signals.checked_level("acceleration", self.acceleration, *ends)
+        put(self, "acceleration", level)
         given = [name for name in ("duration", "rate") if getattr(self, name)]
         if len(given) != 1:
             said = " and ".join(f"{name} = {getattr(self, name)!r}" for name in given)

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..lazy import xr
 from ..model.ranges import EXCITATION, LEVEL, RATIO_QUANTITIES, STRUCTURE
@@ -27,6 +28,11 @@ def make_dataset(
 
 def variable(dims: Dims, values: Any, units: str, long_name: str, **attributes: Any) -> Variable:
     return dims, values, {"units": units, "long_name": long_name, **attributes}
+
+
+def states_over_time(data: xr.Dataset) -> NDArray[np.float64]:
+    """Return the states of a motion in time, m and m/s, shape (n, 4)."""
+    return np.stack([data[name].values for name in STATE], axis=1)
 
 
 def column_variables(

@@ -40,13 +40,17 @@ class Channels:
     @classmethod
     def from_record(cls, record: xr.Dataset, needed: tuple[str, ...] = ()) -> Channels:
         """Check a record, or a result of :func:`orchestrate.shake`, and take its channels."""
-        if not isinstance(record, xr.Dataset) or "time" not in record.coords:
+        is_dataset = isinstance(record, xr.Dataset)
+        if not is_dataset or "time" not in record.coords:
             expected = "expected an xarray.Dataset over time with box_acceleration, acceleration1"
-            dataset = isinstance(record, xr.Dataset)
-            what = describe_dataset(record) if dataset else type(record).__name__
+            what = describe_dataset(record) if is_dataset else type(record).__name__
             raise InputError(f"record: {what}, without time; {expected}")
-        variables = {name: find_channel(record, name) for name in NAMES_IN_RESULTS}
-        present = {name: array for name, array in variables.items() if array is not None}
+        present = {
+            name: record[key]
+            for name, of_shake in NAMES_IN_RESULTS.items()
+            for key in (of_shake, name)  # the last one counts
+            if key in record and record[key].dims == ("time",)
+        }
         missing = [name for name in needed if name not in present]
         if missing or not present:
             lacking = " and no ".join(missing or NAMES_IN_RESULTS)
@@ -57,11 +61,9 @@ class Channels:
             raise InputError(f"record: {time.size} samples; expected at least 16")
         rate = checked_sample_rate(time, record.attrs.get("sample_rate"))
         values = np.stack([checked_finite(name, array, time) for name, array in present.items()])
-        title, box_label = (
-            str(record.attrs.get("title", "record")),
-            source_column_label(record.attrs, BOX),
-        )
-        return cls(time, rate, tuple(present), values, title, box_label)
+        title = str(record.attrs.get("title", "record"))
+        label = source_column_label(record.attrs, BOX)
+        return cls(time, rate, tuple(present), values, title, label)
 
     @property
     def box(self) -> Floats:
@@ -76,14 +78,6 @@ class Channels:
         """Return names and values of all channels but the box's."""
         chosen = [i for i, name in enumerate(self.names) if name != BOX]
         return tuple(self.names[i] for i in chosen), self.values[chosen]
-
-
-def find_channel(record: xr.Dataset, name: str) -> xr.DataArray | None:
-    """Return a channel by its name or :func:`orchestrate.shake`'s name of it; None without."""
-    for candidate in (name, NAMES_IN_RESULTS[name]):
-        if candidate in record and record[candidate].dims == ("time",):
-            return record[candidate]
-    return None
 
 
 def checked_sample_rate(time: Floats, stated: Any) -> float:

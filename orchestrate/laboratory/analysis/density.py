@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import warnings
+from functools import partial
 
 import numpy as np
 
 from ...lazy import xr
 from ...model.ranges import checked_range
-from ...response.labels import variable
+from ...response.labels import Variable, variable
 from .channels import Channels, Floats, analysis_attributes, channel_coordinate
 
 PARTS = 16  # of the record, for standard errors
@@ -52,11 +53,12 @@ def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
     counted = [np.histogram(channel, number, density=True) for channel in channels.values]
     middles = np.stack([0.5 * (edges[:-1] + edges[1:]) for _, edges in counted])
     density = np.stack([heights for heights, _ in counted])
-    rows = moments_with_errors(channels.values)
-    moments = {name: variable("channel", *row) for name, row in rows.items()}
     over = ("channel", "bin")
     return xr.Dataset(
-        {"density": variable(over, density, "s2/m", "probability density"), **moments},
+        {
+            "density": variable(over, density, "s2/m", "probability density"),
+            **moments_with_errors(channels.values),
+        },
         {
             **channel_coordinate(channels.names),
             "bin": variable("bin", np.arange(number), "1", "number of the bin"),
@@ -66,32 +68,26 @@ def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
     )
 
 
-def moments_with_errors(values: Floats) -> dict[str, tuple[Floats, str, str]]:
-    """Compute moments of channels, each with unit and long name; shape (channels,)."""
-    third, fourth = "third moment over the deviation's third", "fourth moment over the deviation's"
-    made = {
-        "mean": (values.mean(axis=1), "m/s2", "mean value"),
-        "standard_deviation": (values.std(axis=1), "m/s2", "standard deviation"),
-        "skewness": (skewness_or_kurtosis(values, "skewness"), "1", f"{third} power"),
-        "kurtosis": (skewness_or_kurtosis(values, "kurtosis"), "1", f"{fourth} fourth power"),
-    }
-    parts = np.array_split(values, PARTS, axis=1)
-    for name in ("skewness", "kurtosis"):
-        error = (
-            np.std([skewness_or_kurtosis(part, name) for part in parts], axis=0, ddof=1)
-            / PARTS**0.5
-        )
-        made[f"{name}_error"] = (error, "1", f"standard error of the {name}")
-    return made
-
-
-def skewness_or_kurtosis(values: Floats, name: str) -> Floats:
-    """Compute skewness or kurtosis (3 for a Gaussian signal); NaN for a constant signal."""
+def moments_with_errors(values: Floats) -> dict[str, Variable]:
+    """Compute the moments of channels; skewness and kurtosis of a constant one are NaN."""
     from scipy.stats import kurtosis, skew
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # of a part that does not move
-        number = (
-            skew(values, axis=-1) if name == "skewness" else kurtosis(values, axis=-1, fisher=False)
-        )
-    return np.where(np.ptp(values, axis=-1) > 0.0, number, np.nan)
+    made = {
+        "mean": variable("channel", values.mean(axis=1), "m/s2", "mean value"),
+        "standard_deviation": variable("channel", values.std(axis=1), "m/s2", "standard deviation"),
+    }
+    errors, parts = {}, np.array_split(values, PARTS, axis=1)
+    powers = {"skewness": ("third", skew), "kurtosis": ("fourth", partial(kurtosis, fisher=False))}
+    for name, (power, moment) in powers.items():
+        text = f"{power} moment over the deviation's {power} power"
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # of a part that does not move
+            whole, *some = (
+                np.where(np.ptp(part, axis=1) > 0.0, moment(part, axis=1), np.nan)
+                for part in (values, *parts)
+            )
+        error = np.std(some, axis=0, ddof=1) / PARTS**0.5
+        made[name] = variable("channel", whole, "1", text)
+        text = f"standard error of the {name}"
+        errors[f"{name}_error"] = variable("channel", error, "1", text)
+    return made | errors

@@ -68,7 +68,14 @@ class Knocks:
         bounce = settings.bounce * gaps.max()
         first = np.diff(begins, prepend=-len(force)) > bounce
         single = first & (gaps > bounce) & (knocks > 0)
-        warn_of_double_hits(channels.time[begins[first & ~single]], first.sum())
+        if (double := first & ~single).any():
+            listed = ", ".join(f"{time:.6g}" for time in channels.time[begins[double]])
+            text = f"double hits, or knocks in which the record begins, at {listed} s"
+            if not single.any():
+                text += "; expected a knock after which the hammer stays away"
+                raise InputError(f"record: {text}")
+            text = f"{double.sum()} of {first.sum()} knocks left out: {text}"
+            warnings.warn(text, UserWarning, stacklevel=3)
         length = samples_per_segment(channels, resolution, int(gaps[single].min()))
         starts = tuple(int(begin) for begin in begins[single])
         return cls(starts, length, width, channels.sample_rate, settings)
@@ -96,14 +103,3 @@ class Knocks:
         powers = [np.mean(np.abs(part) ** 2, axis=0) * scale for part in (one, others)]
         cross = np.mean(np.conj(one) * others, axis=0) * scale
         return rfftfreq(self.length, 1.0 / self.rate), powers[0][0], powers[1], cross
-
-
-def warn_of_double_hits(times: Floats, count: int) -> None:
-    """Warn of knocks that are left out, of ``count`` in all; raise if none is left."""
-    if not len(times):
-        return
-    listed = ", ".join(f"{time:.6g}" for time in times)
-    text = f"double hits, or knocks in which the record begins, at {listed} s"
-    if len(times) == count:
-        raise InputError(f"record: {text}; expected a knock after which the hammer stays away")
-    warnings.warn(f"{len(times)} of {count} knocks left out: {text}", UserWarning, stacklevel=4)

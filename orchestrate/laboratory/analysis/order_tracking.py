@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import compress
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -101,8 +102,7 @@ def track_orders(
         channels, wanted, phase, length, part
     )
     over = ("channel", "order", "time")
-    rate = [window.rate for window in windows]
-    frequency = [window.frequency for window in windows]
+    frequency = [w.frequency for w in windows]
     return xr.Dataset(
         {
             "amplitude": variable(over, np.abs(complex_amplitudes), "m/s2", "amplitude of orders"),
@@ -110,7 +110,7 @@ def track_orders(
             "residual": variable(
                 ("channel", "time"), residual, "m/s2", "root mean square of all but the orders"
             ),
-            "sweep_rate": variable("time", rate, "Hz/s", "rate of the sweep"),
+            "sweep_rate": variable("time", [w.rate for w in windows], "Hz/s", "rate of the sweep"),
         },
         {
             **channel_coordinate(channels.names),
@@ -138,19 +138,18 @@ def fit_orders_in_windows(
         windows = list(sliding_windows(channels, angle, periods, overlap, smooth=measured))
     if not windows:
         turns = abs(float(angle[-1] - angle[0])) / TURN
-        raise InputError(
-            f"periods = {periods!r}: the record has {turns:.4g}; expected fewer in a window"
-        )
+        text = f"the record has {turns:.4g}; expected fewer in a window"
+        raise InputError(f"periods = {periods!r}: {text}")
     fits = [fit_orders_in_window(channels, window, orders) for window in windows]
     amplitudes = np.stack([fitted[0] for fitted in fits], axis=-1)
     residual = np.stack([fitted[1] for fitted in fits], axis=-1)
     if measured:
         sine = sinusoidal_window_mask(channels, windows, amplitudes, residual, orders)
-        windows = [window for window, kept in zip(windows, sine, strict=True) if kept]
-        amplitudes, residual = (
-            refer_phases_to_box(channels, amplitudes[..., sine], orders),
-            residual[:, sine],
-        )
+        windows = list(compress(windows, sine))
+        amplitudes, residual = amplitudes[..., sine], residual[:, sine]
+        # phases against that of the box's own order 1
+        shift = np.angle(amplitudes[channels.names.index(BOX), orders.index(1.0)])
+        amplitudes = amplitudes * np.exp(-1j * np.array(orders)[:, None] * shift)
     return windows, amplitudes, residual
 
 
@@ -241,14 +240,6 @@ def decimate(channels: Channels, highest_frequency: float, samples_per_period: f
     values = resample_poly(channels.values, 1, factor, axis=1, window=low_pass)
     time, rate = channels.time[::factor], channels.sample_rate / factor
     return replace(channels, time=time, sample_rate=rate, values=values)
-
-
-def refer_phases_to_box(
-    channels: Channels, amplitudes: Floats, orders: tuple[float, ...]
-) -> Floats:
-    """Refer complex amplitudes to the phase of the box's own order 1."""
-    shift = np.angle(amplitudes[channels.names.index(BOX), orders.index(1.0)])
-    return np.asarray(amplitudes * np.exp(-1j * np.array(orders)[:, None] * shift))
 
 
 def sinusoidal_window_mask(

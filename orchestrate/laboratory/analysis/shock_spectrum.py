@@ -7,9 +7,9 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...errors import NOT_NUMBERS, InputError
+from ...errors import InputError
 from ...lazy import xr
-from ...model.arguments import checked_unmasked
+from ...model.arguments import checked_list
 from ...model.ranges import checked_range
 from ...response.labels import variable
 from .channels import (
@@ -63,12 +63,8 @@ def shock_spectrum(
     channels = Channels.from_record(record)
     ratio = checked_range("damping", damping, low=0.0, high=1.0, open_high=True)
     natural = requested_or_default_frequencies(channels, frequencies)
-    primary = np.empty((len(channels.names), len(natural)))
-    residual = np.empty_like(primary)
-    for column, frequency in enumerate(natural):
-        primary[:, column], residual[:, column] = primary_and_residual_peaks(
-            channels, float(frequency), ratio
-        )
+    peaks = [primary_and_residual_peaks(channels, f, ratio) for f in natural.tolist()]
+    primary, residual = np.transpose(peaks, (1, 2, 0))
     over = ("channel", "frequency")
     text = "largest absolute acceleration of the oscillator"
     return xr.Dataset(
@@ -90,13 +86,8 @@ def requested_or_default_frequencies(channels: Channels, requested: ArrayLike | 
         octaves = math.log2(highest * channels.duration)
         count = max(1, math.floor(octaves * 12))  # twelve in an octave
         return np.asarray(highest * 2.0 ** (np.arange(-count, 1) / 12))
-    checked_unmasked("frequencies", requested)
-    try:
-        natural = np.atleast_1d(np.asarray(requested, dtype=float))
-    except NOT_NUMBERS:
-        natural = np.array([np.nan])
-    limit = 0.5 * channels.sample_rate
-    if natural.ndim != 1 or not len(natural) or not ((natural > 0.0) & (natural <= limit)).all():
+    natural, limit = np.array(checked_list("frequencies", requested)), 0.5 * channels.sample_rate
+    if not ((natural > 0.0) & (natural <= limit)).all():
         text = f"expected numbers > 0 and <= {limit:g} Hz, half the sampling rate"
         raise InputError(f"frequencies = {requested!r}: {text}")
     return natural
@@ -116,9 +107,8 @@ def primary_and_residual_peaks(
     end = base.shape[1] - 1
     # one period of the free vibration after the record has its largest value
     padded = np.pad(base, ((0, 0), (0, math.ceil(parts * rate / frequency))))
-    response = np.abs(
-        lfilter(*ramp_invariant_filter(frequency, damping, parts * rate), padded, axis=1)
-    )
+    filters = ramp_invariant_filter(frequency, damping, parts * rate)
+    response = np.abs(lfilter(*filters, padded, axis=1))
     return response[:, : end + 1].max(axis=1), response[:, end:].max(axis=1)
 
 
