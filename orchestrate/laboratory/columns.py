@@ -184,11 +184,10 @@ class ColumnAssignment:
     known: dict[str, str]  # one of the words above, by channel
 
     def format(self, table: Columns) -> str:
-        texts = [
-            f'{SHORT_NAMES.get(name, name)} "{table.columns[place].name}"'
-            + (f" ({BY_ORDER})" if self.known[name] == BY_ORDER else "")
-            for name, place in self.indices.items()
-        ]
+        texts = []
+        for name, index in self.indices.items():
+            guess = f" ({BY_ORDER})" if self.known[name] == BY_ORDER else ""
+            texts.append(f'{SHORT_NAMES.get(name, name)} "{table.columns[index].name}"{guess}')
         return ", ".join(texts)
 
     def warn_of_guesses(self, table: Columns, option: str = "channels=") -> None:
@@ -283,16 +282,10 @@ def unit_attributes(
     """Return a record's attributes ``unit``, ``unit_in_file`` (if it differs), ``time_unit``."""
     own = ", ".join(dict.fromkeys(one.unit for one in channels.values() if one.unit))
     used = ", ".join(dict.fromkeys(units.get(name, one.unit) for name, one in channels.items()))
-    differs = any(
-        one.unit and normalize_unit(one.unit) != normalize_unit(units.get(name, one.unit))
-        for name, one in channels.items()
-    )
-    words = {
-        "unit": used,
-        "unit_in_file": own if differs else "",
-        "time_unit": units.get("time", ""),
-    }
-    return {name: text for name, text in words.items() if text or name == "unit"}
+    stated = [(one.unit, units.get(name, one.unit)) for name, one in channels.items() if one.unit]
+    differs = any(normalize_unit(unit) != normalize_unit(other) for unit, other in stated)
+    words = {"unit_in_file": own if differs else "", "time_unit": units.get("time", "")}
+    return {"unit": used} | {name: text for name, text in words.items() if text}
 
 
 def source_column_label(attributes: Mapping[Any, Any], channel: str) -> str:
@@ -319,10 +312,8 @@ def scaled_values(table: Columns, column: Column, factor: float) -> Floats:
     if len(wrong):
         row, value = wrong[0] + table.first_row, column.values[wrong[0]]
         more = f" and {len(wrong) - 1} more" if len(wrong) > 1 else ""
-        raise InputError(
-            f"{column_label(table, column)}, row {row}: {value}{more}; expected numbers of sizes "
-            f"up to {LARGEST:g} in SI units"
-        )
+        expected = f"expected numbers of sizes up to {LARGEST:g} in SI units"
+        raise InputError(f"{column_label(table, column)}, row {row}: {value}{more}; {expected}")
     return values
 
 

@@ -70,9 +70,8 @@ def expand_by_channel(
     if isinstance(argument, str) and "=" in argument:
         parts = [part.partition("=") for part in re.split(r",(?=[^,=]+=)", argument)]
         if bare := [word for word, sign, _ in parts if not sign]:
-            raise InputError(
-                f"{name} = {argument!r}: {bare[0]!r} of which channel? expected base=..."
-            )
+            text = f"{bare[0]!r} of which channel? expected base=..."
+            raise InputError(f"{name} = {argument!r}: {text}")
         argument = {word: value for word, _, value in parts}
     if not isinstance(argument, Mapping):
         return dict.fromkeys(channels, argument)

@@ -94,9 +94,8 @@ class Motion:
     ) -> Floats:
         """Compute the masses' accelerations by (6), or derivatives of them, shape (2, n)."""
         s = self.structure
-        loads = np.asarray(forces) - np.array(
-            [s.k1 * x[0] + s.d1 * v[0], s.k2 * x[1] + s.d2 * v[1]]
-        )
+        springs = np.array([s.k1 * x[0] + s.d1 * v[0], s.k2 * x[1] + s.d2 * v[1]])
+        loads = np.asarray(forces) - springs
         both = (loads[0] + loads[1]) / (s.m1 + s.m2)
         return np.where(touching, both, np.stack([loads[0] / s.m1, loads[1] / s.m2]))
 
@@ -268,16 +267,8 @@ def integrate_between_samples(
     moved = motion.states_after(states[last], touching[last], nodes[last], lengths[last])
     moved = motion.after_impulses(moved, impulses[last + 1])
     target = np.searchsorted(motion.times, nodes[last + 1])
-    exact = (target < len(motion.times)) & (
-        motion.times[np.minimum(target, len(motion.times) - 1)] == nodes[last + 1]
-    )
-    return states, touching, acceleration_mismatch(motion, moved[exact], target[exact])
-
-
-def acceleration_mismatch(motion: Motion, states: Floats, samples: NDArray[np.int_]) -> float:
-    """Return the largest difference between accelerations by states and stored ones, m/s2."""
-    difference = (states - motion.states[samples]).T.reshape(2, 2, -1)
-    touching = motion.touching[samples]
-    return float(
-        np.abs(motion.mass_accelerations(difference[0], difference[1], touching)).max(initial=0.0)
-    )
+    exact = np.append(motion.times, np.inf)[target] == nodes[last + 1]
+    samples = target[exact]
+    off = (moved[exact] - motion.states[samples]).T.reshape(2, 2, -1)
+    accelerations = motion.mass_accelerations(*off, motion.touching[samples])
+    return states, touching, float(np.abs(accelerations).max(initial=0.0))

@@ -108,8 +108,7 @@ class Sensor:
         )
         put(self, "participation", PARTICIPATION.check(self.participation))
         if not isinstance(as_scalar(self.antialiasing), (bool, np.bool_)):
-            text = "expected true or false"
-            raise InputError(f"antialiasing = {self.antialiasing!r}: {text}")
+            raise InputError(f"antialiasing = {self.antialiasing!r}: expected true or false")
 
     @property
     def rate(self) -> float:
@@ -269,9 +268,8 @@ def driving_pieces(history: xr.Dataset, excitation: ExcitationSignal | None) -> 
     steps = len(history.time) - 1
     rate = steps / float(history.time[-1] - history.time[0])
     drives = driving_channel_of_history(history)
-    driven: Any = history[drives].values - (
-        0.0 if drives in FORCES else steady_box_acceleration(history)
-    )
+    steady = 0.0 if drives in FORCES else steady_box_acceleration(history)
+    driven: Any = history[drives].values - steady
     return Sampled(acceleration=driven, sample_rate=rate).pieces()
 
 

@@ -119,6 +119,4 @@ def checked_frequencies(argument: Any) -> tuple[float, ...]:
     if not 1 <= len(values) <= MOST_FREQUENCIES:
         text = f"{len(values)} of them" if several else repr(argument)
         raise InputError(f"frequencies: {text}; expected 1 to {MOST_FREQUENCIES} numbers in Hz")
-    return tuple(
-        checked_quantity(HERTZ, f"frequencies[{i}]", value) for i, value in enumerate(values)
-    )
+    return tuple(checked_quantity(HERTZ, f"frequencies[{i}]", f) for i, f in enumerate(values))

@@ -37,7 +37,6 @@ def jump_indices(curve: ArrayLike, minimum: float) -> Rows:
     padded = np.pad(steps, NEIGHBOURS)
     shifts = [shift for shift in range(-NEIGHBOURS, NEIGHBOURS + 1) if shift]
     around = [np.roll(padded, shift)[NEIGHBOURS:-NEIGHBOURS] for shift in shifts]
-    indices: Rows = np.flatnonzero(
-        large & (steps > JUMP_FACTOR * np.max(around, axis=0, initial=0.0))
-    )
+    steeper = steps > JUMP_FACTOR * np.max(around, axis=0, initial=0.0)
+    indices: Rows = np.flatnonzero(large & steeper)
     return indices

@@ -11,6 +11,7 @@ from abc import ABC
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -118,9 +119,7 @@ class Series:
             "amplitude": self.amplitudes,
             self.name: self.values,
         }
-        coordinates = {
-            name: parameter_variable(name, self.name, values) for name, values in along.items()
-        }
+        coordinates = {n: parameter_variable(n, self.name, along[n]) for n in along}
         text = "excitation period 2 pi/frequency"
         coordinates["period"] = variable(self.name, 2.0 * np.pi / self.frequencies, "s", text)
         return coordinates
@@ -170,10 +169,8 @@ def make_series(
         etas = point_rows(points, lambda point: (point.excitation.eta(point.structure),), 1)[:, 0]
     else:
         etas = np.full(len(points), eta_values)
-    pairs = point_rows(
-        points, lambda each: (each.excitation.frequency, each.excitation.amplitude), 2
-    )
-    return Series(name, varied[name], points, etas, *pairs.T)
+    of_box = attrgetter("excitation.frequency", "excitation.amplitude")
+    return Series(name, varied[name], points, etas, *point_rows(points, of_box, 2).T)
 
 
 def point_rows(
@@ -189,9 +186,8 @@ def checked_over_values(
     """Return the parameter ``over`` with its values as a tuple; {} without one."""
     if over is None:
         if values is not None:
-            raise InputError(
-                "values: expected with over=, the name of the parameter that takes them"
-            )
+            text = "expected with over=, the name of the parameter that takes them"
+            raise InputError(f"values: {text}")
         return {}
     known = (*QUANTITIES, *PARAMETERS)
     if over not in known:
@@ -206,10 +202,8 @@ def checked_over_values(
 def require_complete_excitation(names: Any) -> None:
     """Raise unless these arguments are one of the forms in which an excitation is given."""
     if EXCITATION_PARAMETERS.keys() & set(names) not in COMPLETE:
-        present = (
-            " and ".join(f"{name}=" for name in EXCITATION_PARAMETERS if name in names) or "nothing"
-        )
-        raise InputError(f"excitation: {present} given; {FORMS}")
+        present = " and ".join(f"{name}=" for name in EXCITATION_PARAMETERS if name in names)
+        raise InputError(f"excitation: {present or 'nothing'} given; {FORMS}")
 
 
 def require_equal_lengths(
@@ -220,10 +214,8 @@ def require_equal_lengths(
         raise InputError(f"{others[0]}: is a list beside over = {over!r}; expected one number")
     for other in others:
         if len(varied[other]) != len(varied[name]):
-            raise InputError(
-                f"{other}: {len(varied[other])} values for {len(varied[name])} of {name}; "
-                f"expected one number or one for each {name}"
-            )
+            counts = f"{len(varied[other])} values for {len(varied[name])} of {name}"
+            raise InputError(f"{other}: {counts}; expected one number or one for each {name}")
 
 
 def make_point(structure: Structure, arguments: Mapping[str, Any]) -> Point:
@@ -351,18 +343,14 @@ def checked_start_states(
         dims = swept.end_state.dims
         known: ArrayLike = swept[series.name].values if series.name in dims else []
         if dims != (series.name, "coordinate") or not np.isin(series.values, known).all():
-            raise InputError(
-                f"start: a dataset over {', '.join(map(str, dims))}; expected a sweep in one "
-                f"direction over the same values of {series.name}"
-            )
+            text = f"expected a sweep in one direction over the same values of {series.name}"
+            raise InputError(f"start: a dataset over {', '.join(map(str, dims))}; {text}")
         ends = swept.end_state.sel({series.name: list(series.values)}, method="nearest")
         return tuple((ends.values * series.state_units).ravel().tolist())
     rows = checked_states("start", start, structure)
     if len(rows) not in (1, len(series.values)):
-        raise InputError(
-            f"start: {len(rows)} states; expected one, or one for each of {len(series.values)} "
-            f"values of {series.name}"
-        )
+        values = f"{len(series.values)} values of {series.name}"
+        raise InputError(f"start: {len(rows)} states; expected one, or one for each of {values}")
     return tuple(rows.ravel().tolist())
 
 
@@ -460,6 +448,5 @@ class StartedSeriesQuestion(SeriesQuestion, ABC):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        object.__setattr__(
-            self, "start", checked_start_states(self.start, self.structure, self.series)
-        )
+        states = checked_start_states(self.start, self.structure, self.series)
+        object.__setattr__(self, "start", states)

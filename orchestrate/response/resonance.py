@@ -188,9 +188,8 @@ class ResonanceLevelsJob(ResonanceJob):
     def level_jobs(self) -> tuple[ResonanceJob, ...]:
         """Return the job of each level, for its items and its part of the dataset."""
         shared = {field.name: getattr(self, field.name) for field in fields(ResonanceJob)}
-        return tuple(
-            ResonanceJob(**shared | {"amplitude": self.amplitudes(level)}) for level in self.level
-        )
+        changes = ({"amplitude": self.amplitudes(level)} for level in self.level)
+        return tuple(ResonanceJob(**shared | change) for change in changes)
 
     def count_independent_series(self) -> int:
         return len(self.level) * super().count_independent_series()
@@ -200,10 +199,8 @@ class ResonanceLevelsJob(ResonanceJob):
 
     def dataset(self, table: Table) -> xr.Dataset:
         parts = {name: np.split(values, len(self.level_jobs)) for name, values in table.items()}
-        curves = [
-            job.dataset({name: parts[name][i] for name in parts})
-            for i, job in enumerate(self.level_jobs)
-        ]
+        tables = [{name: parts[name][i] for name in parts} for i in range(len(self.level))]
+        curves = [job.dataset(each) for job, each in zip(self.level_jobs, tables, strict=True)]
         levels = xr.Variable(*parameter_variable("level", "level", self.level))
         whole, *_ = regular = [curve.drop_dims(RAGGED) for curve in curves]
         kept = [str(name) for name, each in whole.data_vars.items() if "structure" in each.dims]

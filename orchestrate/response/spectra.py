@@ -62,10 +62,8 @@ def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floa
 def acceleration_spectrum(states: Floats, periods: int, excitation: Excitation) -> Floats:
     """Return both masses' spectra, impulses included, from states at equal parts of periods."""
     rows, count = np.ascontiguousarray(states, dtype=float), len(states)
-    memory, amplitudes = (
-        np.empty(spectrum_library().spectrum_size(count)),
-        np.empty((2, count // 2 + 1)),
-    )
+    memory = np.empty(spectrum_library().spectrum_size(count))
+    amplitudes = np.empty((2, count // 2 + 1))
     for column, row in enumerate(amplitudes):
         spectrum_library().acceleration_spectrum(
             *(rows[:, column:].ctypes.data, rows.shape[1], count, periods),
@@ -83,9 +81,8 @@ class SpectraJob(SeriesQuestion):
         super().__post_init__()
         require_bonded_twin(self.structure)
         if self.highest > self.points / 2:
-            raise InputError(
-                f"highest = {self.highest:g}: expected at most points/2 = {self.points / 2:g}"
-            )
+            text = f"expected at most points/2 = {self.points / 2:g}"
+            raise InputError(f"highest = {self.highest:g}: {text}")
 
     def orders(self) -> Floats:
         """Return the lines' frequencies as multiples of the excitation's, up to the highest."""
@@ -121,7 +118,7 @@ class SpectraJob(SeriesQuestion):
 
     def dataset(self, table: Table) -> xr.Dataset:
         along, orders = self.series.name, self.orders()
-        speeds = np.array([point.excitation.frequency for point in self.series.points])
+        lines = np.outer(self.series.frequencies, orders)
         text = "amplitude of the absolute acceleration"
         kinds = "bonded and delaminated with impulses; delaminated as sampled between impulses"
         dims = along, "kind", "mass", "order"
@@ -131,9 +128,7 @@ class SpectraJob(SeriesQuestion):
             "kind": variable("kind", np.array(KINDS), "1", kinds),
             "mass": variable("mass", np.array([1, 2]), "1", "mass"),
             "order": variable("order", orders, "1", "multiple of the excitation frequency"),
-            "line": variable(
-                (along, "order"), np.outer(speeds, orders), "rad/s", "frequency of the line"
-            ),
+            "line": variable((along, "order"), lines, "rad/s", "frequency of the line"),
         }
         title = f"Spectra, bonded and delaminated: {self.structure.label()}"
         return make_dataset(variables, coordinates, title)

@@ -59,9 +59,8 @@ class SweepJob(StartedSeriesQuestion):
         values, name = self.series.values, self.series.name
         if self.direction != "given" and len(set(values)) < len(values):
             twice = next(value for value in values if values.count(value) > 1)
-            raise InputError(
-                f"{name}: {twice!r} twice; expected each value once, or direction='given'"
-            )
+            text = "expected each value once, or direction='given'"
+            raise InputError(f"{name}: {twice!r} twice; {text}")
 
     def answering_job(self) -> SweepJob:
         """Return the job; that of values that do not depend on another if each has its start."""
@@ -166,10 +165,8 @@ class SweepJob(StartedSeriesQuestion):
             "sample": labels.variable("sample", numbers, "1", "excitation period n of the sample"),
         }
         if self.direction == "both":
-            text = "order in which the values were computed"
-            coordinates["direction"] = labels.variable(
-                "direction", np.array(["up", "down"]), "1", text
-            )
+            words, text = np.array(["up", "down"]), "order in which the values were computed"
+            coordinates["direction"] = labels.variable("direction", words, "1", text)
         return coordinates
 
 

@@ -40,12 +40,10 @@ def threshold_variables(structure: Structure, along: str, frequency: Floats) -> 
     amplitudes = threshold_amplitudes(structure, frequency)
     event = threshold_event(structure)
     where, peak = f"at which the structure first {event}", "peak acceleration"
+    accelerations = amplitudes * frequency**2
     columns: dict[str, tuple[Any, ...]] = {
         "threshold_amplitude": (along, amplitudes, "m", f"amplitude of the box {where}"),
-        "threshold_acceleration": (
-            *(along, amplitudes * frequency**2, "m/s2"),
-            f"{peak} of the box {where}",
-        ),
+        "threshold_acceleration": (along, accelerations, "m/s2", f"{peak} of the box {where}"),
     }
     low, high = float(frequency.min()), float(frequency.max())
     if low < high and np.isfinite(amplitudes).all() and (amplitudes > 0.0).all():
@@ -143,9 +141,8 @@ def contact_threshold(
     checked = {name: checked_excitation_numbers(name, values) for name, values in both.items()}
     arguments = {name: values for name, values in checked.items() if values is not None}
     if len(arguments) != 1:
-        raise InputError(
-            f"{' and '.join(arguments) or 'nothing'} given; expected eta= or frequency="
-        )
+        stated = " and ".join(arguments) or "nothing"
+        raise InputError(f"{stated} given; expected eta= or frequency=")
     ((name, values),) = arguments.items()
     column = np.atleast_1d(np.asarray(values, dtype=float))
     speeds = column * structure.omega if name == "eta" else column

@@ -147,12 +147,8 @@ class WelchSegments:
     @property
     def scipy_options(self) -> dict[str, Any]:
         """Keywords of :func:`scipy.signal.csd` and :func:`scipy.signal.welch`."""
-        return {
-            "window": self.window,
-            "nperseg": self.length,
-            "noverlap": self.overlap,
-            "detrend": "constant",
-        }
+        sizes = {"nperseg": self.length, "noverlap": self.overlap}
+        return {"window": self.window, **sizes, "detrend": "constant"}
 
     def compute_spectra(
         self, drive: Floats, responses: Floats, rate: float
@@ -160,9 +156,10 @@ class WelchSegments:
         """Return lines, Hz, and spectra of what drives, of the responses and between them."""
         from scipy.signal import csd, welch
 
-        frequency, power = welch(drive, rate, **self.scipy_options)
-        response = welch(responses, rate, **self.scipy_options)[1]
-        return frequency, power, response, csd(drive, responses, rate, **self.scipy_options)[1]
+        options = self.scipy_options
+        frequency, power = welch(drive, rate, **options)
+        response = welch(responses, rate, **options)[1]
+        return frequency, power, response, csd(drive, responses, rate, **options)[1]
 
     @property
     def independent_count(self) -> float:

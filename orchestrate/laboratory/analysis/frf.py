@@ -102,23 +102,20 @@ def frf(
     if knocks is not None:
         window, overlap = "force and exponential", 0.0
         averages, spacing = float(len(knocks.starts)), channels.sample_rate / knocks.length
-        frequency, drive_psd, response_psd, cross = knocks.compute_spectra(drive, responses)
+        spectra = knocks.compute_spectra(drive, responses)
     else:
         segments = divide_into_segments(channels, resolution, window, overlap, fewest=2)
         averages, spacing = segments.independent_count, segments.resolution
-        frequency, drive_psd, response_psd, cross = segments.compute_spectra(
-            drive, responses, channels.sample_rate
-        )
-    made = frf_variables(driving, averages, frequency, drive_psd, response_psd, cross)
+        spectra = segments.compute_spectra(drive, responses, channels.sample_rate)
+    made = frf_variables(driving, averages, *spectra)
     made["resolution"] = variable((), spacing, "Hz", "distance of the lines")
     if knocks is not None:
         text = "rate at which the exponential window falls"
         made["window_decay"] = variable((), knocks.window_decay, "1/s", text)
     text = f"estimator: noise on the response, on the {KINDS[driving][0]}, on both"
-    coordinates: dict[str, Variable] = {
-        "estimator": ("estimator", np.array(ESTIMATORS), {"long_name": text})
-    }
-    coordinates |= channel_coordinate(names) | frequency_coordinate(frequency)
+    estimator: Variable = "estimator", np.array(ESTIMATORS), {"long_name": text}
+    coordinates = {"estimator": estimator, **channel_coordinate(names)}
+    coordinates |= frequency_coordinate(spectra[0])
     settings = {"window": window, "overlap": overlap, "excitation": driving}
     words = analysis_attributes("frf", "Frequency response", channels.title, **settings)
     return xr.Dataset(made, coordinates, words)
@@ -175,9 +172,6 @@ def h1_h2_and_hv(drive_psd: Floats, response_psd: Floats, cross: Floats) -> Floa
     difference = response_psd - drive_psd
     root = np.sqrt(difference**2 + 4.0 * power)
     # both forms are the same number; each is taken where its difference does not cancel
-    total = np.where(
-        difference > 0.0,
-        (difference + root) / (2.0 * np.conj(cross)),
-        2.0 * cross / (root - difference),
-    )
+    forms = (difference + root) / (2.0 * np.conj(cross)), 2.0 * cross / (root - difference)
+    total = np.where(difference > 0.0, *forms)
     return np.stack([cross / drive_psd, response_psd / np.conj(cross), total])

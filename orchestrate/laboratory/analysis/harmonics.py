@@ -62,15 +62,14 @@ def harmonics(
         distortion = np.sqrt(squares) / first
         noise = np.sqrt(squares + 2.0 * tracked.residual**2) / first
     over, at_each = ("channel", "time"), ("channel", "order", "time")
+    text = "total harmonic distortion"
     heading, _, title = tracked.attrs["title"].partition(": ")
     return xr.Dataset(
         {
             "ratio": variable(at_each, ratio.transpose(*at_each).values, "1", "order over order 1"),
-            "distortion": variable(
-                over, distortion.transpose(*over).values, "1", "total harmonic distortion"
-            ),
+            "distortion": variable(over, distortion.transpose(*over).values, "1", text),
             "distortion_and_noise": variable(
-                over, noise.transpose(*over).values, "1", "total harmonic distortion and noise"
+                over, noise.transpose(*over).values, "1", f"{text} and noise"
             ),
             "sweep_rate": tracked.sweep_rate,
         },

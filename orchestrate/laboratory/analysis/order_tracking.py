@@ -98,18 +98,15 @@ def track_orders(
     wanted = checked_orders(orders)
     length = checked_range("periods", periods, low=2.0, high=1e4)
     part = checked_range("overlap", overlap, low=0.0, high=0.95)
-    windows, complex_amplitudes, residual = fit_orders_in_windows(
-        channels, wanted, phase, length, part
-    )
+    windows, fitted, residual = fit_orders_in_windows(channels, wanted, phase, length, part)
     over = ("channel", "order", "time")
     frequency = [w.frequency for w in windows]
+    text = "root mean square of all but the orders"
     return xr.Dataset(
         {
-            "amplitude": variable(over, np.abs(complex_amplitudes), "m/s2", "amplitude of orders"),
-            "phase": variable(over, np.angle(complex_amplitudes), "rad", "phase of sines"),
-            "residual": variable(
-                ("channel", "time"), residual, "m/s2", "root mean square of all but the orders"
-            ),
+            "amplitude": variable(over, np.abs(fitted), "m/s2", "amplitude of orders"),
+            "phase": variable(over, np.angle(fitted), "rad", "phase of sines"),
+            "residual": variable(("channel", "time"), residual, "m/s2", text),
             "sweep_rate": variable("time", [w.rate for w in windows], "Hz/s", "rate of the sweep"),
         },
         {
@@ -257,10 +254,8 @@ def sinusoidal_window_mask(
     sine = forward & (beside <= 0.5) & (rms > 1e-6 * rms.max())  # below, the box is at rest
     length = np.array([len(window.phase) for window in windows])
     if length[sine].sum() < 0.5 * length.sum():
-        raise InputError(
-            f"{channels.box_label}: {np.median(beside):.2g} of its sine's rms is no sine; "
-            "expected a swept sine, or phase="
-        )
+        text = f"{np.median(beside):.2g} of its sine's rms is no sine"
+        raise InputError(f"{channels.box_label}: {text}; expected a swept sine, or phase=")
     return np.asarray(sine)
 
 

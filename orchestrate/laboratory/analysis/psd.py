@@ -61,14 +61,12 @@ def psd(
     segments = divide_into_segments(channels, resolution, window, overlap)
     frequency, density = welch(channels.values, channels.sample_rate, **segments.scipy_options)
     rms = np.sqrt(density.sum(axis=-1) * segments.resolution)
-    independent = segments.independent_count
+    independent, text = segments.independent_count, "standard deviation of a line over the line"
     return xr.Dataset(
         {
             "psd": variable(("channel", "frequency"), density, "m2/s4/Hz", "power density"),
             "rms": variable("channel", rms, "m/s2", "root mean square about the mean value"),
-            "random_error": variable(
-                (), independent**-0.5, "1", "standard deviation of a line over the line"
-            ),
+            "random_error": variable((), independent**-0.5, "1", text),
             "averages": variable((), independent, "1", "independent averages"),
             "resolution": variable((), segments.resolution, "Hz", "distance of the lines"),
         },

@@ -62,19 +62,16 @@ def spectrogram(
     usual = min(max(int((32.0 * count) ** 0.5), FEWEST_LINES), count)
     length = samples_per_segment(channels, resolution) or usual
     hop = max(1, -(-(count - length) // most))
-    transform = ShortTimeFFT.from_window(
-        window, rate, length, length - hop, fft_mode="onesided2X", scale_to="magnitude"
-    )
+    as_amplitude = {"fft_mode": "onesided2X", "scale_to": "magnitude"}
+    transform = ShortTimeFFT.from_window(window, rate, length, length - hop, **as_amplitude)
     first = -(-(length // 2) // hop)  # only whole parts: nothing is put before or after
     last = (count - (length - length // 2)) // hop
     amplitude = np.abs(transform.stft(channels.values, p0=first, p1=max(last, first) + 1))
     time = channels.time[0] + np.arange(first, max(last, first) + 1) * hop / rate
-    over = ("channel", "time", "frequency")
+    over, text = ("channel", "time", "frequency"), "amplitude of a sine at the line"
     return xr.Dataset(
         {
-            "amplitude": variable(
-                over, amplitude.transpose(0, 2, 1), "m/s2", "amplitude of a sine at the line"
-            ),
+            "amplitude": variable(over, amplitude.transpose(0, 2, 1), "m/s2", text),
             "resolution": variable((), rate / length, "Hz", "distance of the lines"),
         },
         {
