@@ -46,6 +46,8 @@ class Units:
     def from_text(cls, text: str, option: str = "units") -> Units:
         """Read units from a list such as ``Hz, mm, g``: at most one of each kind, in any order."""
         chosen: dict[str, str] = {}
+        if not isinstance(text, str):
+            raise InputError(f"{option} = {text!r}: expected a list of {EXPECTED}")
         for part in text.replace(",", " ").split():
             word = ALIKE.get(part.lower(), part)
             kind = next((kind for kind, words in FACTORS.items() if word in words), None)

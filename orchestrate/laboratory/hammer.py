@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from ..errors import InputError
 from ..model.arguments import checked_integer
 from ..model.ranges import Quantity
 from .pieces import Pieces
 from .shock import Shock
-from .signals import SECONDS, ExcitationSignal, check_and_store_fields, checked_quantity
+from .signals import SECONDS, ExcitationSignal, check_and_store_fields, checked_duration
 
 LISTENED = 1000.0  # widths from the knock to the end of the record
 
@@ -52,11 +51,8 @@ class Hammer(ExcitationSignal):
         peak, at = Quantity("peak", "N", "", -1e12, 1e12), Quantity("at", "s", "", 0.0, 1e7)
         check_and_store_fields(self, peak=peak, width=SECONDS, at=at)
         put(self, "half", checked_integer("half", self.half, 1, 2))
-        end = self.at + LISTENED * self.width
-        put(self, "duration", checked_quantity(SECONDS, "duration", self.duration or end))
-        if self.duration < self.at + self.width:
-            text = f"expected at least at + width = {self.at + self.width:g} s"
-            raise InputError(f"duration = {self.duration!r} s: {text}")
+        usual, end = self.at + LISTENED * self.width, self.at + self.width
+        put(self, "duration", checked_duration(self.duration, usual, end, "at + width"))
 
     @property
     def drives(self) -> str:

@@ -170,7 +170,7 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
     >>> read_record(path).box_acceleration.equals(data.box_acceleration)
     True
     """
-    path = Path(path)
+    path = checked_path("path", path)
     kind = file_kind(path)
     check_path_encoding(path)
     channels = [name for name in CHANNELS if name in getattr(data, "variables", {})]

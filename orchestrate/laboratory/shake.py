@@ -15,7 +15,7 @@ from ..errors import InputError
 from ..fmu import OSCILLATOR, PLAYED, Player
 from ..lazy import Unpack, xr
 from ..model import Excitation, Shaker, Structure
-from ..model.arguments import Number, checked_positive
+from ..model.arguments import Number, checked_number, checked_positive
 from ..model.ranges import PUSHES
 from ..response.equations import absolute_accelerations_by_forces
 from ..response.labels import make_dataset, variable, yes_or_no
@@ -244,6 +244,7 @@ def shake(
         text = f"expected at most {MOST_SAMPLES / excitation.duration:.3g} for that duration"
         raise InputError(f"sample_rate = {rate!r} Hz: {text}")
     start = checked_state("start", start, checked_structure(structure))
+    frequency = checked_number("frequency", frequency)
     beside = Excitation(frequency=frequency or structure.omega, amplitude=0.0, **pushes)
     for force in FORCES:
         if (value := getattr(beside, force)) and not frequency:

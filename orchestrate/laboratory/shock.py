@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import InputError
 from ..model.arguments import checked_word
 from ..model.ranges import Quantity
 from .pieces import ERROR, Floats, Pieces, equal_nodes, max_phase_step
-from .signals import LEVEL, SECONDS, ExcitationSignal, check_and_store_fields, checked_quantity
+from .signals import LEVEL, SECONDS, ExcitationSignal, check_and_store_fields, checked_duration
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,11 +47,9 @@ class Shock(ExcitationSignal):
         check_and_store_fields(self, peak=LEVEL, length=SECONDS, delay=delay)
         checked_word("shape", self.shape, ("half-sine", "sawtooth", "trapezoid"))
         end = self.delay + self.length
-        duration = checked_quantity(SECONDS, "duration", self.duration or end + 19.0 * self.length)
+        usual = end + 19.0 * self.length
+        duration = checked_duration(self.duration, usual, end, "delay + length")
         object.__setattr__(self, "duration", duration)
-        if self.duration < end:
-            text = f"expected at least delay + length = {end:g} s"
-            raise InputError(f"duration = {self.duration!r} s: {text}")
 
     @property
     def label(self) -> str:

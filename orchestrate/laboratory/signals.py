@@ -34,6 +34,19 @@ def checked_quantity(quantity: Quantity, name: str, value: object) -> float:
     return own.check(value)
 
 
+def is_stated(value: object) -> bool:
+    """Return whether an argument is given: neither None nor the number 0."""
+    return value is not None and not (isinstance(value, (int, float)) and value == 0)
+
+
+def checked_duration(value: object, usual: float, end: float, what: str) -> float:
+    """Return a duration, by default the usual one, s; raise if it is below ``end``, named so."""
+    duration = checked_quantity(SECONDS, "duration", value if is_stated(value) else usual)
+    if duration < end:
+        raise InputError(f"duration = {duration!r} s: expected at least {what} = {end:g} s")
+    return duration
+
+
 def check_and_store_fields(signal: object, **quantities: Quantity) -> None:
     """Check fields of a frozen dataclass against their quantities, and store them as floats."""
     for name, quantity in quantities.items():

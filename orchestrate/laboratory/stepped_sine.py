@@ -115,6 +115,7 @@ class SteppedSine(Sine):
 def checked_frequencies(argument: Any) -> tuple[float, ...]:
     """Return frequencies in Hz as floats; raise unless there is one at least."""
     several = isinstance(argument, (Sequence, np.ndarray)) and not isinstance(argument, str)
+    several = several and getattr(argument, "ndim", 1) > 0
     values = tuple(argument) if several else ()
     if not 1 <= len(values) <= MOST_FREQUENCIES:
         text = f"{len(values)} of them" if several else repr(argument)

@@ -60,11 +60,12 @@ class SweptSine(signals.Sine):
         ends = sorted((self.first, self.last))
         level = signals.checked_level("acceleration", self.acceleration, *ends)
         put(self, "acceleration", level)
-        given = [name for name in ("duration", "rate") if getattr(self, name)]
+        values = {"duration": self.duration, "rate": self.rate}
+        given = [f"{name} = {one!r}" for name, one in values.items() if signals.is_stated(one)]
         if len(given) != 1:
-            said = " and ".join(f"{name} = {getattr(self, name)!r}" for name in given)
-            raise InputError(f"{said or 'nothing'} given: expected one of duration= and rate=")
-        if self.rate:
+            said = " and ".join(given) or "nothing"
+            raise InputError(f"{said} given: expected one of duration= and rate=")
+        if signals.is_stated(self.rate):
             rate = signals.checked_quantity(Quantity("rate", "", "", 1e-9, 1e9), "rate", self.rate)
             put(self, "duration", self._swept_range() / rate)
             put(self, "rate", None)

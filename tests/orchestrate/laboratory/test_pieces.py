@@ -7,7 +7,20 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from orchestrate import Random, Sampled, Shock, SteppedSine, SweptSine
+from orchestrate import (
+    Hammer,
+    InputError,
+    Random,
+    Sampled,
+    Shock,
+    SteppedSine,
+    Structure,
+    SweptSine,
+    record,
+    shake,
+    write_record,
+)
+from orchestrate.units import Units
 
 ACCURACY = st.floats(-8.0, -2.0).map(lambda power: 10.0**power)
 HERTZ = st.floats(0.1, 500.0)
@@ -161,6 +174,26 @@ def test_sampled_acceleration_goes_through_its_samples_smoothly():
     starts = pieces.derivatives_at(pieces.nodes[1:-1])
     for order, size in ((0, 1e-8), (1, 1e-6), (2, 1e-3)):
         assert np.abs(ends[:, order] - starts[:, order]).max() < size
+
+
+@pytest.mark.parametrize("odd", [np.ma.array([1.0, 2.0], mask=[True, False]), np.ma.masked])
+def test_what_is_no_number_or_list_is_refused_in_one_line(odd):
+    """It was Python's ValueError or TypeError."""
+    sweep = {"first": 1.0, "last": 2.0, "acceleration": 1.0}
+    sine, units = SweptSine(**sweep, duration=1.0), Units.from_text
+    for call in (
+        lambda: Hammer(peak=1.0, width=0.1, duration=odd),
+        lambda: Shock(peak=1.0, length=0.1, duration=odd),
+        lambda: SweptSine(**sweep, duration=odd),
+        lambda: SweptSine(**sweep, rate=odd),
+        lambda: SteppedSine(frequencies=odd, acceleration=1.0),
+        lambda: Sampled(acceleration=odd, sample_rate=1.0),
+        lambda: shake(Structure(), sine, frequency=odd),
+        lambda: write_record(record(acceleration1=[0.0, 1.0, 0.0, -1.0], sample_rate=1.0), odd),
+        lambda: units(odd),
+    ):
+        with pytest.raises(InputError, match="expected"):
+            call()
 
 
 def test_sum_of_signals():
