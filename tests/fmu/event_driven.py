@@ -16,8 +16,8 @@ CUBICS = {
 }
 ZERO = (  # unless given
     *(name for names in CUBICS.values() for name in names),
-    *("clearance", "stroke", "phase_start", "v1_start", "v2_start"),
-    *("force1_amplitude", "force2_amplitude"),
+    *("clearance", "stroke", "phase_start", "x1_start", "x2_start", "v1_start", "v2_start"),
+    *("box_amplitude", "box_frequency", "force1_amplitude", "force2_amplitude"),
 )
 TOLERANCE = 1e-12
 

@@ -56,12 +56,11 @@ def swept(count=4000, rate=1000.0):
     return time, acceleration, velocity, 0.1 * np.sin(phase)
 
 
-def table_file(path, heading, *columns):
-    """Write columns of numbers below a heading."""
-    rows = "".join(
-        ",".join(f"{one:.12g}" for one in row) + "\n" for row in zip(*columns, strict=True)
-    )
-    path.write_text(f"{heading}\n{rows}")
+def table_file(path, heading, *columns, separator=",", decimal="."):
+    """Write columns of numbers below a heading, with all digits; NaN is an empty field."""
+    rows = (separator.join(map(repr, map(float, row))) for row in zip(*columns, strict=True))
+    text = "\n".join(rows).replace(".", decimal).replace("nan", "")
+    path.write_text(f"{heading}\n{text}\n", encoding="utf-8")
     return path
 
 

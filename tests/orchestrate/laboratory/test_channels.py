@@ -1,9 +1,13 @@
 """Which columns of a file are its channels: by name, by order, by a caller, by a setup file."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 
 from orchestrate import InputError, channels, read_record
+
+from .files import G, table_file
 
 TIME = np.arange(400) / 1000.0
 WAVES = [np.sin(250.0 * TIME + i) * (i + 1.0) for i in range(4)]
@@ -11,15 +15,10 @@ BASE, FACE1, FACE2 = "box_acceleration", "acceleration1", "acceleration2"
 
 
 def written(tmp_path, headings, unit="m/s2"):
-    path = tmp_path / "a.csv"
-    names = headings.split(";")
-    rows = zip(TIME, *WAVES[: len(names) - 1], strict=True)
-    units = ["s" if not i else "N" if name == "Force" else unit for i, name in enumerate(names)]
-    head = ";".join(f"{name} [{own}]" for name, own in zip(names, units, strict=True))
-    path.write_text(
-        head + "\n" + "".join(";".join(map(repr, map(float, row))) + "\n" for row in rows)
-    )
-    return path
+    time, *names = headings.split(";")
+    heads = (f"{name} [{'N' if name == 'Force' else unit}]" for name in names)
+    heading, waves = ";".join([f"{time} [s]", *heads]), WAVES[: len(names)]
+    return table_file(tmp_path / "a.csv", heading, TIME, *waves, separator=";")
 
 
 @pytest.mark.parametrize(
@@ -42,16 +41,12 @@ def test_what_is_left_beside_known_columns_is_proposed_and_said(
     tmp_path, headings, expected, proposed
 ):
     path = written(tmp_path, headings)
-    with pytest.warns(UserWarning) if proposed or None in expected else no_warning():
+    with pytest.warns(UserWarning) if proposed or None in expected else nullcontext():
         record = read_record(path)
     wanted = {name: wave for name, wave in zip(expected, WAVES, strict=False) if name}
     assert set(record.data_vars) == set(wanted)
     assert all(np.array_equal(record[name].values, wave) for name, wave in wanted.items())
     assert record.attrs["columns"].count("by its order") in (proposed, len(expected) + 1)
-
-
-def no_warning():
-    return pytest.MonkeyPatch.context()
 
 
 @pytest.mark.parametrize("rate", [0, -1.0, float("nan"), "x"])
@@ -74,9 +69,7 @@ def test_a_setup_file_reads_as_it_says_and_again_the_same(tmp_path):
     assert found.rms.values[1:] == pytest.approx([wave.std() for wave in WAVES[:3]])
     with pytest.raises(InputError, match="sensitivity"):
         read_record(path, toml)
-    text = toml.read_text(encoding="utf-8").replace(
-        'sensitivity = ""', 'sensitivity = "1 V/(m/s2)"'
-    )
+    text = toml.read_text().replace('sensitivity = ""', 'sensitivity = "1 V/(m/s2)"')
     toml.write_text(text.replace('serial_number = ""', 'serial_number = "A7"\nscale = -2', 1))
     record = read_record(path, toml)
     assert np.array_equal(record[FACE1].values, -2.0 * WAVES[0])
@@ -109,7 +102,7 @@ def test_what_is_left_is_said_with_the_arguments_that_read_it(tmp_path):
     with pytest.raises(InputError, match=wanted):
         read_record(path, columns)
     record = read_record(path, columns, unit="face=g")  # of both
-    assert np.array_equal(record[FACE2].values, 9.80665 * WAVES[2])
+    assert np.array_equal(record[FACE2].values, G * WAVES[2])
     assert np.array_equal(read_record(path, columns, unit="face=g,face2=m/s2")[FACE2], WAVES[2])
 
 

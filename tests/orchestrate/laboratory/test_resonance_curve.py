@@ -5,6 +5,8 @@ import pytest
 
 import orchestrate
 
+from .files import table_file
+
 HERTZ = np.arange(40.0, 60.0)
 RATIO = 1.0 / (1.0 - (HERTZ / 50.0) ** 2 + 0.02j)  # order 1 of one mass, 25 at 50 Hz
 PEAK = {"order": 1.0, "frequency": 50.0}
@@ -46,19 +48,12 @@ def test_rows_without_numbers_are_dropped_with_a_word():
     assert found.sizes["frequency"] == 19 and "row 5" in found.attrs["dropped"]
 
 
-def written(path, heading, columns):
-    rows = (";".join(f"{value:.9g}" for value in row) for row in zip(*columns, strict=True))
-    text = "\n".join(row.replace(".", ",").replace("nan", "") for row in rows)
-    path.write_text(f"{heading}\n{text}\n", encoding="utf-8")
-    return path
-
-
 def test_a_table_with_decimal_commas_units_and_gaps_is_read(tmp_path):
     degrees = -np.degrees(np.angle(RATIO))
     degrees[3] = np.nan
-    heading = "Frequenz;base;Amplitude;Phase\nHz;g;mm;\u00b0"
-    columns = (HERTZ, 0.5 + 0.0 * HERTZ, abs(RATIO), degrees)
-    found = orchestrate.read_curve(written(tmp_path / "a.csv", heading, columns))
+    columns = "Frequenz;base;Amplitude;Phase\nHz;g;mm;\u00b0", HERTZ, 0.5 + 0.0 * HERTZ, abs(RATIO)
+    path = table_file(tmp_path / "a.csv", *columns, degrees, separator=";", decimal=",")
+    found = orchestrate.read_curve(path)
     same = curve(level=0.5 * 9.80665, amplitude1=RATIO, unit="mm")
     np.testing.assert_allclose(found.amplitude, same.amplitude, rtol=1e-8)
     np.testing.assert_allclose(found.level, same.level)
@@ -78,6 +73,6 @@ def test_a_table_with_decimal_commas_units_and_gaps_is_read(tmp_path):
     ],
 )
 def test_a_table_that_lacks_something_is_refused(tmp_path, heading, arguments, text):
-    path = written(tmp_path / "a.csv", heading, (HERTZ, abs(RATIO)))
+    path = table_file(tmp_path / "a.csv", heading, HERTZ, abs(RATIO), separator=";")
     with pytest.raises(orchestrate.InputError, match=text):
         orchestrate.read_curve(path, **arguments)

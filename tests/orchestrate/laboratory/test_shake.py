@@ -46,11 +46,6 @@ def exact(signal):
     return lambda t: float(pieces(np.array([t]))[0])
 
 
-def quiet_until(shock):
-    """Where an integration has to begin anew: the pulse's corners."""
-    return [shock.delay, shock.delay + shock.length] if isinstance(shock, Shock) else []
-
-
 def linear_motion(mass, spring, damper, signal, times):
     """Displacement of one oscillator in the box, by DOP853."""
 
@@ -59,8 +54,10 @@ def linear_motion(mass, spring, damper, signal, times):
 
     acceleration = exact(signal)
     y, found = [0.0, 0.0], []
-    ends = [0.0, *(t for t in quiet_until(signal) if t > 0.0), float(times[-1])]
-    for begin, end in zip(ends[:-1], ends[1:], strict=True):
+    pulse = isinstance(signal, Shock)  # at its corners the integration begins anew
+    corners = [signal.delay, signal.delay + signal.length] if pulse else []
+    ends = sorted({0.0, *corners, float(times[-1])})
+    for begin, end in pairwise(ends):
         inside = times[(times >= begin) & ((times < end) | (end == ends[-1]))]
         grid = np.union1d(inside, [end])
         run = solve_ivp(
@@ -88,10 +85,7 @@ def test_bonded_structure_is_the_linear_oscillator(name):
 
 def reference(structure, signal):
     """The motion from ``OPEN`` by the solver that is written without the kernel."""
-    names = ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma")
-    values = {name: getattr(structure, name) for name in names}
-    values |= {"x1_start": OPEN[0], "x2_start": OPEN[1], "box_amplitude": 0.0, "box_frequency": 0.0}
-    return Motion(values, exact(signal))
+    return Motion(structure.parameters() | {"x2_start": OPEN[1]}, exact(signal))
 
 
 def random_structure(seed, restitution=(0.5, 0.9), damping=(0.003, 0.02)):
@@ -103,7 +97,7 @@ def random_structure(seed, restitution=(0.5, 0.9), damping=(0.003, 0.02)):
     )
 
 
-@pytest.mark.parametrize("seed", ordinary(range(20), 3))
+@pytest.mark.parametrize("seed", ordinary(range(20), [0, 2]))
 def test_impacts_of_a_swept_sine_are_those_of_an_independent_integration(seed):
     """All impacts up to chaos, to 1e-7 of a period."""
     structure = random_structure(seed)
@@ -125,7 +119,7 @@ def test_impacts_of_a_swept_sine_are_those_of_an_independent_integration(seed):
     assert (data.sticks.values[:regular] == sticks[:regular]).all()
 
 
-@pytest.mark.parametrize("seed", ordinary(range(20), 2))
+@pytest.mark.parametrize("seed", ordinary(range(20)))
 def test_sticking_and_release_are_those_of_an_independent_integration(seed):
     """The whole motion with its sticking and releases, to 1e-6 of the peak."""
     structure = random_structure(seed, (0.05, 0.35), (0.01, 0.04))

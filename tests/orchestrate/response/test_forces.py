@@ -37,7 +37,7 @@ def solver(structure, phase=0.0):
     wall = structure.wall
     pushes = {"box_acceleration": PUSHES["box_acceleration"], "force1_amplitude": PUSHES["force1"]}
     values = structure.parameters() | {f"box_{name}": value for name, value in BOX.items()} | pushes
-    values |= {"phase_start": phase, "x1_start": 0.0, "x2_start": 0.0}
+    values |= {"phase_start": phase}
     return Motion(values | {"force2_amplitude": 0.0 if wall else -0.2})
 
 
@@ -155,8 +155,7 @@ def test_shaken_motions_are_those_of_an_independent_solver(kind):
     for signal in (sine, knock):
         given = {"accuracy": 1e-10, "sample_rate": 8.0, "progress": False}
         data = orchestrate.shake(structure, signal, **given, **pushes_of(structure), frequency=2.3)
-        pieces, frequency = signal.pieces(1e-10), {"box_frequency": 2.3, "box_amplitude": 0.0}
-        values = structure.parameters() | frequency | {"x1_start": 0.0, "x2_start": 0.0}
+        pieces, values = signal.pieces(1e-10), structure.parameters() | {"box_frequency": 2.3}
         values |= {f"{name}_amplitude": value for name, value in forces.items()}
         exact = Motion(values | {"box_acceleration": PUSHES["box_acceleration"]})
         if signal is sine:
