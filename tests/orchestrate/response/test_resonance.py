@@ -108,11 +108,9 @@ def test_the_peak_of_a_linear_oscillator():
 
 def test_ripples_are_no_peaks_and_zeros_do_no_harm():
     ripples = 1.0 + 0.04 * np.sin(80.0 * GRID)
-    assert (
-        len(prominent_maximum_indices(ripples, 0.1)) == 0
-        and len(prominent_maximum_indices(ripples, 0.05)) > 10
-    )
-    assert len(prominent_maximum_indices(np.zeros(5), 0.1)) == 0
+    assert len(prominent_maximum_indices(ripples, 0.05)) > 10
+    for curve in (ripples, np.zeros(5)):
+        assert len(prominent_maximum_indices(curve, 0.1)) == 0
 
 
 def test_a_jump_and_what_is_none():
@@ -131,7 +129,7 @@ LEVELS = [0.05, 1.0, 6.0]
 SHORT = {"transient": 60, "samples": 6, "progress": False}
 
 
-def test_a_sweep_over_the_level_is_one_over_the_amplitude(exported):
+def test_a_sweep_over_the_level_is_one_over_the_amplitude():
     over = {"over": "level", "values": LEVELS}
     by_level = orchestrate.sweep(PRESSED, frequency=HERTZ, **over, **SHORT)
     amplitudes = [level / HERTZ**2 for level in LEVELS]
@@ -144,10 +142,9 @@ def test_a_sweep_over_the_level_is_one_over_the_amplitude(exported):
     assert gaps[0] == 0.0 and (gaps[1:] > 0.0).all()  # it opens between the first two
 
 
-@pytest.mark.parametrize("direction", ["up", "both"])
-def test_resonance_at_levels_is_resonance_at_each(exported, direction):
+def test_resonance_at_levels_is_resonance_at_each():
     frequency = (2.0 * np.pi) * np.arange(44.0, 52.0, 1.0)
-    shared = {"frequency": frequency, "direction": direction, **SHORT}
+    shared = {"frequency": frequency, **SHORT}
     family = orchestrate.resonance_levels(PRESSED, level=LEVELS, **shared)
     for level in LEVELS:
         alone = orchestrate.resonance(PRESSED, amplitude=level / frequency**2, **shared)

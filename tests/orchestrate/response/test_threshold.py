@@ -108,8 +108,8 @@ def fine_scan(structure, low, high):
     """Lowest acceleration on a grid that is dense around each natural frequency."""
     s = structure
     natural = np.sqrt([s.k1 / s.m1, s.k2 / s.m2, (s.k1 + s.k2) / (s.m1 + s.m2)])
-    near = np.concatenate([[-1.0], -np.geomspace(1.0, 1e-9, 4000), np.geomspace(1e-9, 1.0, 4000)])
-    points = np.concatenate([np.linspace(low, high, 20000), *(w * (1.0 + near) for w in natural)])
+    near = np.concatenate([[-1.0], -np.geomspace(1.0, 1e-9, 1000), np.geomspace(1e-9, 1.0, 1000)])
+    points = np.concatenate([np.linspace(low, high, 5000), *(w * (1.0 + near) for w in natural)])
     points = np.unique(points[(points >= low) & (points <= high)])
     level = orchestrate.contact_threshold(structure, frequency=points).threshold_acceleration
     return float(level.min()), float(points[level.values.argmin()])
