@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Annotated
 
-from ..model.arguments import checked_integer
+from ..model.arguments import check_and_convert_fields, whole
 from ..model.ranges import Quantity
 from .pieces import Pieces
 from .shock import Shock
-from .signals import SECONDS, ExcitationSignal, check_and_store_fields, checked_duration
+from .signals import ExcitationSignal, Moment, Seconds, checked_duration, checked_quantity
 
 LISTENED = 1000.0  # widths from the knock to the end of the record
 
@@ -40,19 +42,17 @@ class Hammer(ExcitationSignal):
     (4.1, 'force1')
     """
 
-    peak: float
-    width: float
-    at: float = 0.0
-    half: int = 1
+    peak: Annotated[float, partial(checked_quantity, Quantity("peak", "N", "", -1e12, 1e12))]
+    width: Seconds
+    at: Moment = 0.0
+    half: Annotated[int, whole(1, 2)] = 1
     duration: float = 0.0
 
     def __post_init__(self) -> None:
-        put = object.__setattr__
-        peak, at = Quantity("peak", "N", "", -1e12, 1e12), Quantity("at", "s", "", 0.0, 1e7)
-        check_and_store_fields(self, peak=peak, width=SECONDS, at=at)
-        put(self, "half", checked_integer("half", self.half, 1, 2))
+        check_and_convert_fields(self)
         usual, end = self.at + LISTENED * self.width, self.at + self.width
-        put(self, "duration", checked_duration(self.duration, usual, end, "at + width"))
+        duration = checked_duration(self.duration, usual, end, "at + width")
+        object.__setattr__(self, "duration", duration)
 
     @property
     def drives(self) -> str:

@@ -14,7 +14,7 @@ from ..constants import TURN
 from ..errors import InputError
 from ..lazy import xr
 from ..model import Shaker, Structure
-from ..model.arguments import checked_positive
+from ..model.arguments import Positive, check_and_convert_fields, checked_positive
 from ..response.equations import absolute_accelerations_unforced
 from ..response.labels import states_over_time, variable
 from ..weak_drive.controllers import ControllerState, InputControl
@@ -22,7 +22,6 @@ from ..weak_drive.cosimulate import cosimulate
 from ..weak_drive.polynomials import Cubic
 from .signals import Sine
 
-POSITIVE = ("start", "averaging", "compression", "tolerance", "patience", "rise")
 RECORDED = ("current", "voltage", "power")
 
 
@@ -73,20 +72,19 @@ class LevelControl(InputControl):
     """
 
     sine: Sine
-    start: float
+    start: Positive
     limit: float = math.inf
-    averaging: float = 4.0
-    compression: float = 10.0
-    patience: float = 20.0
-    rise: float = 100.0
+    averaging: Positive = 4.0
+    compression: Positive = 10.0
+    patience: Positive = 20.0
+    rise: Positive = 100.0
     fastest: float = 1.2
-    tolerance: float = 2.0
+    tolerance: Positive = 2.0
 
     def __post_init__(self) -> None:
         if not isinstance(self.sine, Sine):
             raise InputError(f"sine = {self.sine!r}: expected a SweptSine or SteppedSine")
-        for name in POSITIVE:
-            object.__setattr__(self, name, checked_positive(name, getattr(self, name)))
+        check_and_convert_fields(self)
         for name in ("fastest", "tolerance"):
             if not 1.0 < getattr(self, name) < math.inf:
                 raise InputError(f"{name} = {getattr(self, name)!r}: expected a factor > 1")

@@ -11,8 +11,12 @@ from numpy.typing import NDArray
 
 from ..constants import TURN
 from ..errors import InputError
+from ..model.arguments import check_and_convert_fields
+from ..model.ranges import Quantity
 from . import signals
 from .pieces import ERROR, POINTS, Floats, Pieces, max_phase_step
+
+RMS = Quantity("rms", "m/s2", "", 1e-12, 1e12)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,13 +51,13 @@ class Random(signals.ExcitationSignal):
     """
 
     psd: signals.Profile
-    duration: float
+    duration: signals.Seconds
     seed: int = 0
     rms: float = None  # type: ignore[assignment]  # it is known once all is checked
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "psd", signals.checked_profile("psd", self.psd, signals.DENSITY))
-        signals.check_and_store_fields(self, duration=signals.SECONDS)
+        check_and_convert_fields(self)
         whole = isinstance(self.seed, (int, np.integer)) and not isinstance(self.seed, bool)
         if not whole or self.seed < 0:
             raise InputError(f"seed = {self.seed!r}: expected a whole number >= 0")
@@ -64,10 +68,11 @@ class Random(signals.ExcitationSignal):
             raise InputError(f"duration = {self.duration!r} s: {text}")
         rms = float(np.sqrt(0.5 * (amplitudes**2).sum()))
         if self.rms is not None:
-            signals.check_and_store_fields(self, rms=signals.LEVEL)
-            scaled = tuple((f, value * (self.rms / rms) ** 2) for f, value in self.psd)
+            stated = signals.checked_quantity(RMS, "rms", self.rms)
+            scaled = tuple((f, value * (stated / rms) ** 2) for f, value in self.psd)
             object.__setattr__(self, "psd", scaled)
-        object.__setattr__(self, "rms", self.rms or rms)
+            rms = stated
+        object.__setattr__(self, "rms", rms)
 
     @property
     def label(self) -> str:

@@ -9,9 +9,10 @@ import numpy as np
 
 from ..errors import InputError
 from ..lazy import xr
+from ..model.arguments import check_and_convert_fields
 from .pieces import Pieces
 from .record import checked_finite_list
-from .signals import HERTZ, MOST_PIECES, ExcitationSignal, checked_quantity
+from .signals import MOST_PIECES, ExcitationSignal, Hertz
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,17 +31,17 @@ class Sampled(ExcitationSignal):
     """
 
     acceleration: tuple[float, ...]
-    sample_rate: float
+    sample_rate: Hertz
     duration: float = field(init=False)
 
     def __post_init__(self) -> None:
         put = object.__setattr__
+        check_and_convert_fields(self)
         values = checked_finite_list("acceleration", self.acceleration)
         if len(values) > MOST_PIECES:
             text = f"{len(values)} values; expected a list of at most {MOST_PIECES} numbers"
             raise InputError(f"acceleration: {text}")
         put(self, "acceleration", tuple(values.tolist()))
-        put(self, "sample_rate", checked_quantity(HERTZ, "sample_rate", self.sample_rate))
         put(self, "duration", (len(values) - 1) / self.sample_rate)
 
     def __repr__(self) -> str:

@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import partial
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from ..errors import InputError
 from ..lazy import xr
 from ..model import Structure
-from ..model.arguments import checked_integer, checked_word
-from ..model.ranges import ADDED, STRUCTURE, Quantity, as_scalar
+from ..model.arguments import check_and_convert_fields, whole
+from ..model.ranges import ADDED, STRUCTURE, Quantity
 from ..running.job import refuse_unsupported, refuse_unsupported_structure
 from .analog_filter import (
     AnalogFilter,
@@ -32,9 +33,10 @@ from .reconstruction import (
 )
 from .record import ACCELERATIONS, CHANNELS, FORCES, record
 from .sampled import Sampled
-from .signals import HERTZ, ExcitationSignal, check_and_store_fields
+from .signals import HERTZ, ExcitationSignal, Hertz, Level, checked_quantity
 
-FILTERS = ("butterworth", "bessel")
+NOISE = Quantity("noise", "(m/s2)/sqrt(Hz)", "", 0.0, 1e12)
+RANGE = Quantity("range", "m/s2", "", 5e-324, math.inf)
 PARTICIPATION = Quantity("participation", "1", "", -10.0, 10.0)  # of a sensor's place
 MOST_SAMPLES = 20_000_000
 EMPTY = np.empty(0)
@@ -80,35 +82,21 @@ class Sensor:
     25600.0
     """
 
-    bandwidth: float
-    order: int = 4
-    kind: str = "butterworth"
-    noise: float = 0.0
-    range: float = math.inf
+    bandwidth: Hertz
+    order: Annotated[int, whole(1, 10)] = 4
+    kind: Literal["butterworth", "bessel"] = "butterworth"
+    noise: Annotated[float, partial(checked_quantity, NOISE)] = 0.0
+    range: Annotated[float, partial(checked_quantity, RANGE)] = math.inf
     sample_rate: float | None = None
-    resolution: float = 0.0
-    seed: int = 0
+    resolution: Level = 0.0
+    seed: Annotated[int, whole(0, 2**63)] = 0
     antialiasing: bool = True
-    participation: float = 1.0
+    participation: Annotated[float, partial(checked_quantity, PARTICIPATION)] = 1.0
 
     def __post_init__(self) -> None:
-        put = object.__setattr__
-        check_and_store_fields(self, bandwidth=HERTZ)
+        check_and_convert_fields(self)
         rate = 2.56 * self.bandwidth if self.sample_rate is None else self.sample_rate
-        put(self, "sample_rate", rate)
-        check_and_store_fields(self, sample_rate=HERTZ)
-        checked_word("kind", self.kind, FILTERS)
-        put(self, "order", checked_integer("order", self.order, 1, 10))
-        put(self, "seed", checked_integer("seed", self.seed, 0, 2**63))
-        check_and_store_fields(
-            self,
-            noise=Quantity("noise", "(m/s2)/sqrt(Hz)", "", 0.0, 1e12),
-            range=Quantity("range", "m/s2", "", 5e-324, math.inf),
-            resolution=Quantity("resolution", "m/s2", "", 0.0, 1e12),
-        )
-        put(self, "participation", PARTICIPATION.check(self.participation))
-        if not isinstance(as_scalar(self.antialiasing), (bool, np.bool_)):
-            raise InputError(f"antialiasing = {self.antialiasing!r}: expected true or false")
+        object.__setattr__(self, "sample_rate", checked_quantity(HERTZ, "sample_rate", rate))
 
     @property
     def rate(self) -> float:

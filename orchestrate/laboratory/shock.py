@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
-from ..model.arguments import checked_word
-from ..model.ranges import Quantity
+from ..model.arguments import check_and_convert_fields
 from .pieces import ERROR, Floats, Pieces, equal_nodes, max_phase_step
-from .signals import LEVEL, SECONDS, ExcitationSignal, check_and_store_fields, checked_duration
+from .signals import ExcitationSignal, Level, Moment, Seconds, checked_duration
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,16 +36,14 @@ class Shock(ExcitationSignal):
     The box keeps the pulse's change of velocity: a shaker adds pulses before and after.
     """
 
-    peak: float
-    length: float
-    shape: str = "half-sine"
-    delay: float = 0.0
+    peak: Level
+    length: Seconds
+    shape: Literal["half-sine", "sawtooth", "trapezoid"] = "half-sine"
+    delay: Moment = 0.0
     duration: float = 0.0
 
     def __post_init__(self) -> None:
-        delay = Quantity("delay", "s", "", 0.0, 1e7)
-        check_and_store_fields(self, peak=LEVEL, length=SECONDS, delay=delay)
-        checked_word("shape", self.shape, ("half-sine", "sawtooth", "trapezoid"))
+        check_and_convert_fields(self)
         end = self.delay + self.length
         usual = end + 19.0 * self.length
         duration = checked_duration(self.duration, usual, end, "delay + length")

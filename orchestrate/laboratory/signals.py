@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from functools import reduce
+from functools import partial, reduce
 from itertools import pairwise
 from operator import add
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -47,10 +48,11 @@ def checked_duration(value: object, usual: float, end: float, what: str) -> floa
     return duration
 
 
-def check_and_store_fields(signal: object, **quantities: Quantity) -> None:
-    """Check fields of a frozen dataclass against their quantities, and store them as floats."""
-    for name, quantity in quantities.items():
-        object.__setattr__(signal, name, checked_quantity(quantity, name, getattr(signal, name)))
+# types of fields that carry their checks
+Hertz = Annotated[float, partial(checked_quantity, HERTZ)]
+Seconds = Annotated[float, partial(checked_quantity, SECONDS)]
+Moment = Annotated[float, partial(checked_quantity, Quantity("time", "s", "", 0.0, 1e7))]
+Level = Annotated[float, partial(checked_quantity, LEVEL)]
 
 
 def checked_profile(name: str, points: object, quantity: Quantity) -> Profile:

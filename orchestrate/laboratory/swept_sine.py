@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..constants import TURN
 from ..errors import InputError
-from ..model.arguments import checked_word
+from ..model.arguments import check_and_convert_fields
 from ..model.ranges import Quantity
 from . import signals
 from .pieces import ERROR, Floats, Pieces, equal_nodes, max_phase_step, subdivide
@@ -44,17 +45,16 @@ class SweptSine(signals.Sine):
     130.2
     """
 
-    first: float
-    last: float
+    first: signals.Hertz
+    last: signals.Hertz
     acceleration: float | signals.Profile
     duration: float = 0.0
     rate: float | None = None
-    spacing: str = "linear"
+    spacing: Literal["linear", "log"] = "linear"
 
     def __post_init__(self) -> None:
         put = object.__setattr__
-        signals.check_and_store_fields(self, first=signals.HERTZ, last=signals.HERTZ)
-        checked_word("spacing", self.spacing, ("linear", "log"))
+        check_and_convert_fields(self)
         if self.first == self.last:
             raise InputError(f"last = {self.last!r} Hz: expected another frequency than first")
         ends = sorted((self.first, self.last))
@@ -69,7 +69,8 @@ class SweptSine(signals.Sine):
             rate = signals.checked_quantity(Quantity("rate", "", "", 1e-9, 1e9), "rate", self.rate)
             put(self, "duration", self._swept_range() / rate)
             put(self, "rate", None)
-        signals.check_and_store_fields(self, duration=signals.SECONDS)
+        duration = signals.checked_quantity(signals.SECONDS, "duration", self.duration)
+        put(self, "duration", duration)
 
     def _swept_range(self) -> float:
         """Return the range swept: Hz if linear, 60 times the octaves if logarithmic."""

@@ -161,6 +161,12 @@ def checks_by_field(kind: type) -> dict[str, Check]:
     return checks
 
 
+def check_and_convert_fields(instance: object) -> None:
+    """Check the fields of a dataclass whose types have a check; set them to what it returns."""
+    for name, check in checks_by_field(type(instance)).items():
+        object.__setattr__(instance, name, check(name, getattr(instance, name)))
+
+
 # Types of keywords that several public functions have, each with its check: `Annotated` is a type
 # for editors and type checkers, and `checks_by_field` finds the check. Those of words
 # (`Literal`) and flags (`bool`) need no more.

@@ -21,7 +21,7 @@ from ..errors import NOT_NUMBERS, InputError
 from ..fmu import REST, gaps_of_states
 from ..lazy import xr
 from ..model import PARAMETERS, Excitation, Structure
-from ..model.arguments import Numbers, checked_numbers, checked_unmasked
+from ..model.arguments import Numbers, check_and_convert_fields, checked_numbers, checked_unmasked
 from ..model.ranges import COMPLETE, EXCITATION, LEVEL, PUSHES, RATIO_QUANTITIES
 from ..model.spelling import expected_one_of
 from ..running.job import Job, format_brief, refuse_unsupported_structure
@@ -376,7 +376,7 @@ class Question(Job, ABC):
 
     def __post_init__(self) -> None:
         checked_structure(self.structure)
-        self.check_and_convert_fields()
+        check_and_convert_fields(self)
 
     def answering_job(self) -> Question:
         """Return the job that answers the question: another one where its arguments make it so."""

@@ -17,7 +17,6 @@ import numpy as np
 
 from ..errors import InputError
 from ..lazy import xr
-from ..model.arguments import checks_by_field
 
 Fmus = Mapping[str, Path]  # FMU files by model
 Table = dict[str, np.ndarray]  # arrays by name, their rows along the first axis
@@ -56,11 +55,6 @@ class Job(ABC):
     # as there happen to be (revolutions, impacts), or one: the state at the chunk's end
     item_columns: ClassVar[tuple[str, ...] | None] = None
     item: ClassVar[str] = "item"  # what the progress bar counts
-
-    def check_and_convert_fields(self) -> None:
-        """Check the fields whose types have a check, and set them to what it returns."""
-        for name, check in checks_by_field(type(self)).items():
-            object.__setattr__(self, name, check(name, getattr(self, name)))
 
     def require_supported_structure(self) -> None:
         question = self.asked or type(self).__name__

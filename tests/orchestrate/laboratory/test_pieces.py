@@ -191,6 +191,7 @@ def test_what_is_no_number_or_list_is_refused_in_one_line(odd):
         lambda: shake(Structure(), sine, frequency=odd),
         lambda: write_record(record(acceleration1=[0.0, 1.0, 0.0, -1.0], sample_rate=1.0), odd),
         lambda: units(odd),
+        lambda: Random(psd=PROFILE, duration=2.0, rms=0.0),  # its pieces had no numbers
     ):
         with pytest.raises(InputError, match="expected"):
             call()
