@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,11 @@ from .frf import ESTIMATORS, frf
 BAND = (0.2, 5.0)  # of the resonance: lines that are fitted
 Complexes = NDArray[np.complex128]
 MISFIT = 0.2  # of the response: one oscillator does not describe it
+FITTED = {  # units, long names
+    "mass": ("kg", "modal mass"),
+    "frequency": ("Hz", "undamped natural frequency"),
+    "damping": ("1", "damping ratio"),
+}
 
 
 def halves(
@@ -88,34 +93,36 @@ def halves(
             fits += [] if one is None else [fit_half(one, resolution, estimator)]
         except InputError as error:
             raise InputError(re.sub("^record", name, str(error))) from None
-    fits.sort(key=lambda fit: fit.half)
+    fits.sort(key=itemgetter("knocked"))
     if thicknesses is not None:
-        mass, f, zeta = fits[0].values
+        mass, f, zeta = (fits[0][name] for name in FITTED)
         structure = Structure.from_bonded(mass=mass, f=f, zeta=zeta, thicknesses=thicknesses)
     else:
-        if [fit.half for fit in fits] != [1, 2]:
-            raise InputError(f"other: both knock on half {fits[0].half}; expected one on each")
-        (m1, f1, zeta1), (m2, f2, zeta2) = (fit.values for fit in fits)
+        if (struck := [fit["knocked"] for fit in fits]) != [1, 2]:
+            raise InputError(f"other: both knock on half {struck[0]}; expected one on each")
+        (m1, f1, zeta1), (m2, f2, zeta2) = ([fit[name] for name in FITTED] for fit in fits)
         numbers = {"m1": m1, "m2": m2, "f1": f1, "f2": f2, "zeta1": zeta1, "zeta2": zeta2}
         structure = Structure.from_halves(**numbers)
     if output is not None:
         write(output, structure=structure)
-    return dataset_of_halves(fits, structure)
+    texts = {}
+    for name, (unit, text) in FITTED.items():
+        texts[name] = unit, text
+        texts[f"{name}_error"] = unit, f"standard error of the {text}"
+    texts["misfit"] = "1", "what the oscillator leaves of the response, relative"
+    texts |= {"averages": ("1", "knocks averaged"), "knocked": ("1", "half that is struck")}
+    made = {n: variable("knocked", [fit[n] for fit in fits], *texts[n]) for n in texts}
+    coordinates = {"knocked": made.pop("knocked")}
+    parameters = {name: +value for name, value in structure.parameters().items()}  # no Booleans
+    title = f"Halves by knocks: {structure.label()}"
+    return xr.Dataset(made, coordinates, {"title": title, **parameters})
 
 
-@dataclass(frozen=True)
-class HalfFit:
-    """Oscillator fitted to the response of a half over the force on it."""
+def fit_half(record: xr.Dataset, resolution: float | None, estimator: str) -> dict[str, float]:
+    """Fit ``s^2/(m (s^2 + 2 zeta w s + w^2))`` to the acceleration over the force, by SciPy.
 
-    half: int
-    values: Floats  # mass in kg, undamped natural frequency in Hz, damping ratio
-    errors: Floats  # standard errors
-    misfit: float
-    averages: float
-
-
-def fit_half(record: xr.Dataset, resolution: float | None, estimator: str) -> HalfFit:
-    """Fit ``s^2/(m (s^2 + 2 zeta w s + w^2))`` to the acceleration over the force, by SciPy."""
+    Return the variables of :func:`halves`, with the half as ``knocked``.
+    """
     from scipy.optimize import least_squares
 
     response = frf(record, resolution=resolution)
@@ -147,7 +154,9 @@ def fit_half(record: xr.Dataset, resolution: float | None, estimator: str) -> Ha
         raise InputError(f"record: one oscillator leaves {100 * misfit:.0f} % of {name}; {text}")
     covariance = np.linalg.pinv(fit.jac.T @ fit.jac) * 2.0 * fit.cost / (2.0 * len(s) - 3.0)
     errors = np.sqrt(np.diag(covariance)) * np.abs(start)
-    return HalfFit(int(driven[-1]), fit.x * start, errors, misfit, float(response.averages))
+    row = {"knocked": int(driven[-1]), "misfit": misfit, "averages": float(response.averages)}
+    names = (*FITTED, *(f"{name}_error" for name in FITTED))
+    return row | dict(zip(names, [*fit.x * start, *errors], strict=True))
 
 
 def mass_frequency_and_damping(s: Complexes, curve: Complexes, weight: Floats) -> Floats:
@@ -162,23 +171,3 @@ def mass_frequency_and_damping(s: Complexes, curve: Complexes, weight: Floats) -
         raise InputError("record: no resonance in the response to the knock; expected one")
     critical = 2.0 * np.sqrt(k * m)
     return np.array([m, np.sqrt(k / m) / TURN, max(d / critical, 1e-6)])
-
-
-def dataset_of_halves(fits: list[HalfFit], structure: Structure) -> xr.Dataset:
-    import xarray as xr
-
-    every = [fit.values for fit in fits], [fit.errors for fit in fits]
-    words = {"mass": ("kg", "modal mass"), "frequency": ("Hz", "undamped natural frequency")}
-    words["damping"] = ("1", "damping ratio")
-    made = {}
-    for i, (name, (unit, text)) in enumerate(words.items()):
-        values, errors = ([row[i] for row in rows] for rows in every)
-        made[name] = variable("knocked", values, unit, text)
-        made[f"{name}_error"] = variable("knocked", errors, unit, f"standard error of the {text}")
-    text = "what the oscillator leaves of the response, relative"
-    made["misfit"] = variable("knocked", [fit.misfit for fit in fits], "1", text)
-    made["averages"] = variable("knocked", [fit.averages for fit in fits], "1", "knocks averaged")
-    knocked = variable("knocked", [fit.half for fit in fits], "1", "half that is struck")
-    numbers = {name: +value for name, value in structure.parameters().items()}  # no Booleans
-    title = f"Halves by knocks: {structure.label()}"
-    return xr.Dataset(made, {"knocked": knocked}, {"title": title, **numbers})
