@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from orchestrate import record
+from orchestrate import Structure, record
 
 G = 9.80665
 RATE = 5120.0
@@ -29,6 +29,15 @@ X_Value\tTisch\tSpitze\tComment
 0,0015\t0,0\t4,0
 0,0020\t0,5\t1,0
 """
+
+
+def random_structure(seed, restitution=(0.5, 0.9), damping=(0.003, 0.02), **more):
+    draw = np.random.default_rng(seed).uniform
+    m1, f1 = draw(0.5, 2.0), draw(30.0, 60.0)
+    return Structure.from_halves(
+        **{"m1": m1, "m2": m1 * draw(0.4, 2.0), "f1": f1, "f2": f1 * draw(1.1, 1.8)},
+        **{"zeta1": draw(*damping), "zeta2": draw(*damping), "e": draw(*restitution), **more},
+    )
 
 
 def drawn(count=300, start=0.0, rate=RATE, **more):

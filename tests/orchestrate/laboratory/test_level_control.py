@@ -14,7 +14,7 @@ BEAM = orchestrate.Structure.from_halves(**HALVES)
 SHAKER = orchestrate.Shaker.from_file("shaker_100N").replace(table_mass=0.4)
 LEVEL = 4.0
 STEPS = orchestrate.SteppedSine(
-    frequencies=(40.0, 46.0), acceleration=LEVEL, settle_cycles=80, measured_cycles=20
+    frequencies=(40.0, 46.0), acceleration=LEVEL, settle_cycles=60, measured_cycles=10
 )
 
 
@@ -55,7 +55,7 @@ def test_the_level_is_held_and_the_current_is_that_of_the_linear_system():
 
 @pytest.mark.usefixtures("exported")
 def test_it_aborts_where_the_amplifier_cannot():
-    weak, one = SHAKER.replace(voltage_limit=0.05), {"frequencies": (40.0,), "settle_cycles": 110}
+    weak, one = SHAKER.replace(voltage_limit=0.05), {"frequencies": (40.0,), "settle_cycles": 118}
     run = orchestrate.shake(BEAM, replace(STEPS, **one), shaker=weak, progress=False)
     end = float(run.control_aborted)
     assert 100.0 < 40.0 * end < 125.0  # periods of `rise` and `patience`

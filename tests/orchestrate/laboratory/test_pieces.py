@@ -7,19 +7,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from orchestrate import (
-    Hammer,
-    InputError,
-    Random,
-    Sampled,
-    Shock,
-    SteppedSine,
-    Structure,
-    SweptSine,
-    record,
-    shake,
-    write_record,
-)
+import orchestrate
+from orchestrate import Random, Sampled, Shock, SteppedSine, SweptSine
 from orchestrate.units import Units
 
 ACCURACY = st.floats(-8.0, -2.0).map(lambda power: 10.0**power)
@@ -46,14 +35,22 @@ def sweeps(draw):
     return SweptSine(first=first, last=last, acceleration=level, duration=duration, spacing=spacing)
 
 
+@st.composite
+def stepped_sines(draw):
+    cycles = {"settle_cycles": draw(st.integers(0, 30)), "measured_cycles": 5}
+    level = draw(st.sampled_from([3.0, ((0.05, 1.0), (3.0, 8.0), (600.0, 2.0))]))
+    frequencies = draw(st.lists(HERTZ, min_size=1, max_size=6))
+    return SteppedSine(frequencies=frequencies, acceleration=level, **cycles)
+
+
 @settings(deadline=None)
-@given(sweeps(), ACCURACY)
-def test_swept_sine_within_its_bound(sweep, accuracy):
-    pieces = sweep.pieces(accuracy)
-    times = times_within(sweep.duration)
-    peak = float(sweep.level(np.linspace(0.0, sweep.duration, 200_001)).max())
-    distance = np.abs(pieces(times) - sweep(times)).max()
-    phase_rounding = 1e-15 * float(sweep.phase(sweep.duration))
+@given(st.one_of(sweeps(), stepped_sines()), ACCURACY)
+def test_a_sine_is_within_its_bound(sine, accuracy):
+    pieces = sine.pieces(accuracy)
+    times = times_within(sine.duration)
+    peak = float(sine.level(np.linspace(0.0, sine.duration, 200_001)).max())
+    distance = np.abs(pieces(times) - sine(times)).max()
+    phase_rounding = 1e-15 * float(sine.phase(sine.duration))
     assert distance <= pieces.error + (1e-13 + phase_rounding) * peak
     assert pieces.error <= 1.02 * accuracy * peak  # what was asked for
 
@@ -70,23 +67,6 @@ def test_swept_sine_is_the_standard_one():
     assert np.allclose(log(t), expected, rtol=0.0, atol=1e-9)
 
 
-@settings(deadline=None)
-@given(st.lists(HERTZ, min_size=1, max_size=6), st.booleans(), st.integers(0, 30), ACCURACY)
-def test_stepped_sine_within_its_bound(frequencies, profile, settle, accuracy):
-    level = ((0.05, 1.0), (3.0, 8.0), (600.0, 2.0)) if profile else 3.0
-    stepped = SteppedSine(
-        frequencies=frequencies, acceleration=level, settle_cycles=settle, measured_cycles=5
-    )
-    pieces = stepped.pieces(accuracy)
-    times = times_within(stepped.duration)
-    peak = 8.0 if profile else 3.0
-    phase_rounding = 1e-15 * float(stepped.phase(stepped.duration))
-    distance = np.abs(pieces(times) - stepped(times)).max()
-    assert distance <= pieces.error + (1e-13 + phase_rounding) * peak
-    assert pieces.error <= 1.02 * accuracy * peak
-    assert pieces.duration == stepped.duration == stepped.measured_times()[-1, 1]
-
-
 STEPPED = SteppedSine(
     frequencies=(20.0, 31.0, 25.0), acceleration=4.0, settle_cycles=7, measured_cycles=5
 )
@@ -95,6 +75,7 @@ STEPPED = SteppedSine(
 def test_a_stepped_sine_neither_jumps_nor_drifts():
     """Acceleration and velocity go on where the frequency changes; the place stays bounded."""
     pieces = STEPPED.pieces(1e-8)
+    assert pieces.duration == STEPPED.duration == STEPPED.measured_times()[-1, 1]
     for change in STEPPED.measured_times()[:-1, 1]:
         before, after = pieces.derivatives_at(np.array([change - 1e-9, change + 1e-9]))
         assert abs(before[0] - 4.0) < 1e-6 and abs(after[0] - 4.0) < 1e-6
@@ -180,20 +161,20 @@ def test_sampled_acceleration_goes_through_its_samples_smoothly():
 def test_what_is_no_number_or_list_is_refused_in_one_line(odd):
     """It was Python's ValueError or TypeError."""
     sweep = {"first": 1.0, "last": 2.0, "acceleration": 1.0}
-    sine, units = SweptSine(**sweep, duration=1.0), Units.from_text
+    sine, made = SweptSine(**sweep, duration=1.0), {"acceleration1": [0.0, 1.0, 0.0, -1.0]}
     for call in (
-        lambda: Hammer(peak=1.0, width=0.1, duration=odd),
+        lambda: orchestrate.Hammer(peak=1.0, width=0.1, duration=odd),
         lambda: Shock(peak=1.0, length=0.1, duration=odd),
         lambda: SweptSine(**sweep, duration=odd),
         lambda: SweptSine(**sweep, rate=odd),
         lambda: SteppedSine(frequencies=odd, acceleration=1.0),
         lambda: Sampled(acceleration=odd, sample_rate=1.0),
-        lambda: shake(Structure(), sine, frequency=odd),
-        lambda: write_record(record(acceleration1=[0.0, 1.0, 0.0, -1.0], sample_rate=1.0), odd),
-        lambda: units(odd),
+        lambda: orchestrate.shake(orchestrate.Structure(), sine, frequency=odd),
+        lambda: orchestrate.write_record(orchestrate.record(**made, sample_rate=1.0), odd),
+        lambda: Units.from_text(odd),
         lambda: Random(psd=PROFILE, duration=2.0, rms=0.0),  # its pieces had no numbers
     ):
-        with pytest.raises(InputError, match="expected"):
+        with pytest.raises(orchestrate.InputError, match="expected"):
             call()
 
 

@@ -13,6 +13,7 @@ from orchestrate.show.labels import title_from_attributes
 
 from ...fmu.event_driven import Motion
 from ...sparing import ordinary
+from .files import random_structure
 
 BEAM = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.007, e=0.6)
 SWEEP = SweptSine(first=40.0, last=52.0, duration=1.5, acceleration=4.9)
@@ -86,15 +87,6 @@ def test_bonded_structure_is_the_linear_oscillator(name):
 def reference(structure, signal):
     """The motion from ``OPEN`` by the solver that is written without the kernel."""
     return Motion(structure.parameters() | {"x2_start": OPEN[1]}, exact(signal))
-
-
-def random_structure(seed, restitution=(0.5, 0.9), damping=(0.003, 0.02)):
-    draw = np.random.default_rng(seed).uniform
-    m1, f1 = draw(0.5, 2.0), draw(30.0, 60.0)
-    return Structure.from_halves(
-        **{"m1": m1, "m2": m1 * draw(0.4, 2.0), "f1": f1, "f2": f1 * draw(1.1, 1.8)},
-        **{"zeta1": draw(*damping), "zeta2": draw(*damping), "e": draw(*restitution)},
-    )
 
 
 @pytest.mark.parametrize("seed", ordinary(range(20), [0, 2]))

@@ -29,12 +29,17 @@ TOLERANCE = 1e-2
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 
+def memory_of(samples, frequency=1.0, gap=1.0):
+    """The kernel's memory of states, as the loop fills it."""
+    memory = [0.0] * repetition.memory_size(len(samples))
+    memory[: repetition.MULTIPLICITY] = len(samples), frequency, gap, TOLERANCE
+    memory[repetition.HEAD : repetition.HEAD + samples.size] = samples.ravel().tolist()
+    return memory
+
+
 def decide(samples, frequency=1.0, gap=1.0):
     """What the rule decides, compiled and in Python."""
-    count = len(samples)
-    memory = [0.0] * repetition.memory_size(count)
-    memory[: repetition.MULTIPLICITY] = count, frequency, gap, TOLERANCE
-    memory[repetition.HEAD : repetition.HEAD + samples.size] = samples.ravel()
+    memory = memory_of(samples, frequency, gap)
     repetition.write_decided_multiplicity(memory, 0.0)
     compiled = call_repetition_kernel("decide_multiplicity", samples, (frequency, gap, TOLERANCE))
     found = Decision(*(int(compiled[i]) for i in (repetition.MULTIPLICITY, repetition.DECIDED)))
@@ -227,10 +232,8 @@ def test_a_period_that_is_seen_a_few_times_repeats_to_a_thousandth_of_the_tolera
 def test_the_nearest_state_is_numpys(seed):
     rng = np.random.default_rng(seed)
     states, given, frequency, gap = rng.normal(size=(9, 4)), rng.normal(size=4), 1.7, 0.9
-    m = [0.0] * repetition.memory_size(9)
-    m[: repetition.MULTIPLICITY] = 9, frequency, gap, TOLERANCE
+    m = memory_of(states, frequency, gap)
     m[repetition.GIVEN : repetition.HEAD] = given.tolist()
-    m[repetition.HEAD : repetition.HEAD + 36] = states.ravel().tolist()
     repetition.write_nearest_state(m, 0.0)
     unit = np.array([1.0, 1.0, frequency, frequency])
     sized, other = states / unit, given / unit
@@ -245,9 +248,7 @@ def test_the_nearest_state_is_numpys(seed):
 
 @pytest.mark.parametrize(("gap", "counts"), [(1.01 / 2**20, True), (0.99 / 2**20, False)])
 def test_a_gap_below_a_millionth_of_the_motion_is_as_large(gap, counts):
-    m = [0.0] * repetition.memory_size(2)
-    m[: repetition.MULTIPLICITY] = 2, 1.0, gap, TOLERANCE
-    m[repetition.HEAD : repetition.HEAD + 4] = 1.0, 1.0, 0.0, 0.0
+    m = memory_of(np.array([[1.0, 1.0, 0.0, 0.0], [0.0] * 4]), gap=gap)
     repetition.write_scaled_states(m, 0)
     assert m[repetition.SIZE_OF_GAP] == (gap if counts else 2.0**-20)
     assert m[repetition.AWAY] == len(m) - 2  # deviations are the last row
@@ -343,8 +344,8 @@ def test_where_a_response_has_repeated_it_lies_on_a_stable_orbit_of_as_many_peri
     ],
 )
 def test_impacts_of_all_samples_are_those_of_the_response(found, impacts, n, same):
-    memory = [0.0] * repetition.memory_size(200)
-    memory[repetition.COUNT], memory[repetition.MULTIPLICITY] = 200, n
+    memory = memory_of(np.zeros((200, 4)))
+    memory[repetition.MULTIPLICITY] = n
     memory[repetition.IMPACTS], memory[repetition.OWN_IMPACTS] = found, impacts
     memory[repetition.DECIDED] = REPEATED
     repetition.confirm_by_impacts(memory, 0.0)
@@ -373,7 +374,7 @@ def test_a_spiral_that_shrinks_is_not_irregular(halving, turn, expected):
 
 @pytest.mark.parametrize(("found", "expected"), [(0, (1, UNDECIDED)), (1, (0, IRREGULAR))])
 def test_irregular_motions_have_impacts(found, expected):
-    memory = [0.0] * repetition.memory_size(200)
+    memory = memory_of(np.zeros((200, 4)))
     memory[repetition.IMPACTS], memory[repetition.DECIDED] = found, IRREGULAR
     repetition.confirm_by_impacts(memory, 0.0)
     assert (memory[repetition.MULTIPLICITY], memory[repetition.DECIDED]) == expected
