@@ -10,7 +10,7 @@ of polynomials and impulses has no error but rounding.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,31 +83,21 @@ class AnalogFilter:
     def _state_increments(self, signal: PolynomialSignal, times: Floats) -> Complexes:
         """Compute what the signal adds to each pole's state over each step, at the step's end."""
         increments = np.zeros((len(self.poles), len(times) - 1), dtype=complex)
-        for part in block_slices(len(signal.starts)):
+        step = (times[-1] - times[0]) / (len(times) - 1)
+        for begin in range(0, len(signal.starts), BLOCK):
+            part = slice(begin, begin + BLOCK)
             starts, ends = signal.starts[part], signal.ends[part]
             steps = step_indices(ends, times)
             lengths, remaining = ends - starts, times[steps + 1] - ends
             count = signal.derivatives.shape[1]
             moments = signal.derivatives[part] * lengths[:, None] ** np.arange(1, count + 1)
-            step = (times[-1] - times[0]) / (len(times) - 1)
-            distinct, which = distinct_lengths_and_indices(lengths, step)
+            # of lengths that differ by less than 1e-12 of a step one counts
+            whole, which = np.unique(np.round(lengths / (1e-12 * step)), return_inverse=True)
             for row, pole in zip(increments, self.poles, strict=True):
-                weights = phi_functions(pole * distinct, count)[:, which]
+                weights = phi_functions(pole * (whole * (1e-12 * step)), count)[:, which]
                 gained = np.einsum("nk,kn->n", moments, weights) * np.exp(pole * remaining)
                 row[steps[0] : steps[-1] + 1] += sum_by_step(steps - steps[0], gained)
         return increments
-
-
-def block_slices(count: int) -> Iterator[slice]:
-    """Yield slices that divide an array of ``count`` elements into blocks."""
-    for begin in range(0, count, BLOCK):
-        yield slice(begin, min(begin + BLOCK, count))
-
-
-def distinct_lengths_and_indices(lengths: Floats, step: float) -> tuple[Floats, NDArray[np.int_]]:
-    """Return the distinct lengths (equal to 1e-12 of a step), and each one's index among them."""
-    whole, which = np.unique(np.round(lengths / (1e-12 * step)), return_inverse=True)
-    return whole * (1e-12 * step), which
 
 
 def step_indices(moments: Floats, times: Floats) -> NDArray[np.int_]:
@@ -127,21 +117,14 @@ def phi_functions(z: Complexes, count: int) -> Complexes:
     """Compute ``phi_k(z)``, the integral of ``exp(z (1 - u)) u^(k-1)/(k-1)!`` over u in [0, 1]."""
     phi = np.empty((count, len(z)), dtype=complex)
     size = np.abs(z)
-    far = size > FAR
-    phi[:, far] = phi_by_upward_recurrence(z[far], count)
+    far = size > FAR  # from one to the next: nothing cancels there
+    last = np.exp(z[far])
+    for k in range(count):
+        last = phi[k, far] = (last - 1.0 / math.factorial(k)) / z[far]
     for low, high in ((-1.0, NEAR), (NEAR, FAR)):
         part = (size > low) & (size <= high)
         if part.any():
             phi[:, part] = phi_by_downward_recurrence(z[part], count, high)
-    return phi
-
-
-def phi_by_upward_recurrence(z: Complexes, count: int) -> Complexes:
-    """Compute ``phi_k(z)`` from ``phi_(k-1)``: for large z, where nothing cancels."""
-    phi = np.empty((count, len(z)), dtype=complex)
-    last = np.exp(z)
-    for k in range(1, count + 1):
-        last = phi[k - 1] = (last - 1.0 / math.factorial(k - 1)) / z
     return phi
 
 

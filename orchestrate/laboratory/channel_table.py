@@ -19,10 +19,9 @@ from ..model.arguments import checked_path
 from ..response.labels import variable
 from .columns import Column, ColumnAssignment, Columns, assign_columns, convert_to_si, times_in_s
 from .conversion import (
-    ACCELERATIONS,
     FORCES,
-    LENGTHS,
-    SPEEDS,
+    MOTIONS,
+    OF_MOTIONS,
     VOLTAGES,
     ByChannel,
     expand_by_channel,
@@ -34,13 +33,8 @@ from .record_files import read_columns_in_process
 from .stated_channels import ACTING, SENSOR_WORDS, Channels, ChannelSetup
 
 NOT_READ = "not read"
-QUANTITIES = {
-    "acceleration": ACCELERATIONS,
-    "velocity": SPEEDS,
-    "displacement": LENGTHS,
-    "voltage": VOLTAGES,
-    "force": FORCES,
-}
+QUANTITIES = {word: OF_MOTIONS[n] for n, word in MOTIONS.items()}
+QUANTITIES |= {"voltage": VOLTAGES, "force": FORCES}
 
 
 def channels(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,7 @@ from ...errors import NOT_NUMBERS, InputError
 from ...lazy import xr
 from ...model.arguments import checked_word
 from ...model.ranges import checked_range
-from ...response.labels import Variable, variable
+from ...response.labels import Variable
 from ...running.provenance import describe_dataset
 from ..columns import source_column_label
 from ..pieces import Floats
@@ -79,6 +79,20 @@ class Channels:
         chosen = [i for i, name in enumerate(self.names) if name != BOX]
         return tuple(self.names[i] for i in chosen), self.values[chosen]
 
+    def result(
+        self,
+        analysis: str,
+        heading: str,
+        variables: Mapping[str, Variable],
+        coordinates: Mapping[str, Variable],
+        names: Sequence[str] = (),
+        **settings: Any,
+    ) -> xr.Dataset:
+        """Return the dataset of an analysis over all channels, or those with the given names."""
+        channel = "channel", np.array(names or self.names), {"long_name": "channel of the record"}
+        words = analysis_attributes(analysis, heading, self.title, **settings)
+        return xr.Dataset(variables, {"channel": channel, **coordinates}, words)
+
 
 def checked_sample_rate(time: Floats, stated: Any) -> float:
     """Return the sampling rate of times, Hz, as stated if it agrees; raise if they are uneven."""
@@ -115,14 +129,6 @@ def checked_finite(name: str, array: xr.DataArray, time: Floats) -> Floats:
 
 
 # -- results --------------------------------------------------------------------------------------
-
-
-def channel_coordinate(names: Sequence[str]) -> dict[str, Variable]:
-    return {"channel": ("channel", np.array(names), {"long_name": "channel of the record"})}
-
-
-def frequency_coordinate(frequency: Floats) -> dict[str, Variable]:
-    return {"frequency": variable("frequency", frequency, "Hz", "frequency")}
 
 
 def analysis_attributes(analysis: str, heading: str, title: str, **settings: Any) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import numpy as np
 from ...lazy import xr
 from ...model.ranges import checked_range
 from ...response.labels import Variable, variable
-from .channels import Channels, Floats, analysis_attributes, channel_coordinate
+from .channels import Channels, Floats
 
 PARTS = 16  # of the record, for standard errors
 
@@ -54,17 +54,17 @@ def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
     middles = np.stack([0.5 * (edges[:-1] + edges[1:]) for _, edges in counted])
     density = np.stack([heights for heights, _ in counted])
     over = ("channel", "bin")
-    return xr.Dataset(
+    return channels.result(
+        "probability_density",
+        "Probability density",
         {
             "density": variable(over, density, "s2/m", "probability density"),
             **moments_with_errors(channels.values),
         },
         {
-            **channel_coordinate(channels.names),
             "bin": variable("bin", np.arange(number), "1", "number of the bin"),
             "acceleration": variable(over, middles, "m/s2", "acceleration in the bin's middle"),
         },
-        analysis_attributes("probability_density", "Probability density", channels.title),
     )
 
 

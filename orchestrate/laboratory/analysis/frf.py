@@ -12,16 +12,7 @@ from ...errors import InputError
 from ...lazy import xr
 from ...response.labels import Variable, variable, yes_or_no
 from ..record import FORCES
-from .channels import (
-    BOX,
-    Channels,
-    Floats,
-    analysis_attributes,
-    channel_coordinate,
-    checked_finite,
-    divide_into_segments,
-    frequency_coordinate,
-)
+from .channels import BOX, Channels, Floats, checked_finite, divide_into_segments
 from .knocks import Knocks
 
 ESTIMATORS = ("H1", "H2", "Hv")
@@ -114,11 +105,10 @@ def frf(
         made["window_decay"] = variable((), knocks.window_decay, "1/s", text)
     text = f"estimator: noise on the response, on the {KINDS[driving][0]}, on both"
     estimator: Variable = "estimator", np.array(ESTIMATORS), {"long_name": text}
-    coordinates = {"estimator": estimator, **channel_coordinate(names)}
-    coordinates |= frequency_coordinate(spectra[0])
+    frequency = variable("frequency", spectra[0], "Hz", "frequency")
+    coordinates = {"estimator": estimator, "frequency": frequency}
     settings = {"window": window, "overlap": overlap, "excitation": driving}
-    words = analysis_attributes("frf", "Frequency response", channels.title, **settings)
-    return xr.Dataset(made, coordinates, words)
+    return channels.result("frf", "Frequency response", made, coordinates, names, **settings)
 
 
 def driving_channel(record: xr.Dataset, channels: Channels) -> tuple[str, Floats]:

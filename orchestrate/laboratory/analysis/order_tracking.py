@@ -17,7 +17,7 @@ from ...model.ranges import checked_range
 from ...response.labels import variable
 from ..stepped_sine import SteppedSine
 from ..swept_sine import SweptSine
-from .channels import BOX, Channels, Floats, analysis_attributes, channel_coordinate
+from .channels import BOX, Channels, Floats
 
 MOST_ORDERS = 50
 EDGE = 2.0  # periods at both ends where the Hilbert transform is not trusted
@@ -102,7 +102,9 @@ def track_orders(
     over = ("channel", "order", "time")
     frequency = [w.frequency for w in windows]
     text = "root mean square of all but the orders"
-    return xr.Dataset(
+    return channels.result(
+        "orders",
+        "Orders",
         {
             "amplitude": variable(over, np.abs(fitted), "m/s2", "amplitude of orders"),
             "phase": variable(over, np.angle(fitted), "rad", "phase of sines"),
@@ -110,12 +112,12 @@ def track_orders(
             "sweep_rate": variable("time", [w.rate for w in windows], "Hz/s", "rate of the sweep"),
         },
         {
-            **channel_coordinate(channels.names),
             "order": variable("order", np.array(wanted), "1", "frequency over the excitation's"),
             "time": variable("time", [w.time for w in windows], "s", "middle of the window"),
             "frequency": variable("time", frequency, "Hz", "frequency of the excitation"),
         },
-        analysis_attributes("orders", "Orders", channels.title, periods=length, overlap=part),
+        periods=length,
+        overlap=part,
     )
 
 

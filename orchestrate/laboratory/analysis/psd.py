@@ -6,13 +6,7 @@ import numpy as np
 
 from ...lazy import xr
 from ...response.labels import variable
-from .channels import (
-    Channels,
-    analysis_attributes,
-    channel_coordinate,
-    divide_into_segments,
-    frequency_coordinate,
-)
+from .channels import Channels, divide_into_segments
 
 
 def psd(
@@ -62,7 +56,9 @@ def psd(
     frequency, density = welch(channels.values, channels.sample_rate, **segments.scipy_options)
     rms = np.sqrt(density.sum(axis=-1) * segments.resolution)
     independent, text = segments.independent_count, "standard deviation of a line over the line"
-    return xr.Dataset(
+    return channels.result(
+        "psd",
+        "Power density",
         {
             "psd": variable(("channel", "frequency"), density, "m2/s4/Hz", "power density"),
             "rms": variable("channel", rms, "m/s2", "root mean square about the mean value"),
@@ -70,6 +66,7 @@ def psd(
             "averages": variable((), independent, "1", "independent averages"),
             "resolution": variable((), segments.resolution, "Hz", "distance of the lines"),
         },
-        {**channel_coordinate(channels.names), **frequency_coordinate(frequency)},
-        analysis_attributes("psd", "Power density", channels.title, window=window, overlap=overlap),
+        {"frequency": variable("frequency", frequency, "Hz", "frequency")},
+        window=window,
+        overlap=overlap,
     )

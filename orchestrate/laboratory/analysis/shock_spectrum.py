@@ -12,13 +12,7 @@ from ...lazy import xr
 from ...model.arguments import checked_list
 from ...model.ranges import checked_range
 from ...response.labels import variable
-from .channels import (
-    Channels,
-    Floats,
-    analysis_attributes,
-    channel_coordinate,
-    frequency_coordinate,
-)
+from .channels import Channels, Floats
 
 
 def shock_spectrum(
@@ -67,15 +61,16 @@ def shock_spectrum(
     primary, residual = np.transpose(peaks, (1, 2, 0))
     over = ("channel", "frequency")
     text = "largest absolute acceleration of the oscillator"
-    return xr.Dataset(
+    return channels.result(
+        "shock_spectrum",
+        "Shock response spectrum",
         {
             "maximax": variable(over, np.maximum(primary, residual), "m/s2", text),
             "primary": variable(over, primary, "m/s2", f"{text} during the record"),
             "residual": variable(over, residual, "m/s2", f"{text} after the record"),
             "damping": variable((), ratio, "1", "damping ratio of the oscillators"),
         },
-        {**channel_coordinate(channels.names), **frequency_coordinate(natural)},
-        analysis_attributes("shock_spectrum", "Shock response spectrum", channels.title),
+        {"frequency": variable("frequency", natural, "Hz", "frequency")},
     )
 
 

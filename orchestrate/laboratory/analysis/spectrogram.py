@@ -8,15 +8,7 @@ from ...lazy import xr
 from ...model.arguments import checked_word
 from ...model.ranges import checked_range
 from ...response.labels import variable
-from .channels import (
-    FEWEST_LINES,
-    WINDOWS,
-    Channels,
-    analysis_attributes,
-    channel_coordinate,
-    frequency_coordinate,
-    samples_per_segment,
-)
+from .channels import FEWEST_LINES, WINDOWS, Channels, samples_per_segment
 
 
 def spectrogram(
@@ -69,15 +61,16 @@ def spectrogram(
     amplitude = np.abs(transform.stft(channels.values, p0=first, p1=max(last, first) + 1))
     time = channels.time[0] + np.arange(first, max(last, first) + 1) * hop / rate
     over, text = ("channel", "time", "frequency"), "amplitude of a sine at the line"
-    return xr.Dataset(
+    return channels.result(
+        "spectrogram",
+        "Spectra over the time",
         {
             "amplitude": variable(over, amplitude.transpose(0, 2, 1), "m/s2", text),
             "resolution": variable((), rate / length, "Hz", "distance of the lines"),
         },
         {
-            **channel_coordinate(channels.names),
             "time": variable("time", time, "s", "time in the middle of the spectrum"),
-            **frequency_coordinate(transform.f),
+            "frequency": variable("frequency", transform.f, "Hz", "frequency"),
         },
-        analysis_attributes("spectrogram", "Spectra over the time", channels.title, window=window),
+        window=window,
     )
