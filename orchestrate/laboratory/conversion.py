@@ -121,31 +121,28 @@ def number_by_channel(
 def factor_and_derivatives(
     label: str, unit: str, sensitivity: str = "", tables: Tables = OF_MOTIONS
 ) -> tuple[float, int]:
-    """Return the factor from a column's unit to SI, and how many derivatives make acceleration."""
-    plain = normalize_unit(unit)
-    if plain in VOLTAGES or (not plain and sensitivity):
-        return voltage_factor_and_derivatives(label, unit or "V", sensitivity, tables)
-    for derivatives, factors in tables.items():
-        if plain in factors:
-            return factors[plain], derivatives
-    names = "m/s2, g, mm/s, um, V" if tables is OF_MOTIONS else "N, kN, V"
-    raise InputError(f"{label}: unit = {unit!r}; expected one such as {names}: give it by unit=")
+    """Return the factor from a column's unit to SI, and how many derivatives make acceleration.
 
-
-def voltage_factor_and_derivatives(
-    label: str, unit: str, sensitivity: str, tables: Tables
-) -> tuple[float, int]:
-    """Return the same of a voltage, by its sensitivity, such as ``100 mV/g``."""
-    usual = "100 mV/g or 50 mV/(mm/s)" if tables is OF_MOTIONS else "22 mV/N"
-    expected = f"expected one such as {usual}, or base=... for one channel: give it by sensitivity="
+    Of a voltage they follow from its sensitivity, such as ``100 mV/g``.
+    """
+    plain, is_motion = normalize_unit(unit), tables is OF_MOTIONS
+    derivatives = {name: n for n, factors in tables.items() for name in factors}
+    if plain in derivatives:
+        return tables[derivatives[plain]][plain], derivatives[plain]
+    if plain not in VOLTAGES and (plain or not sensitivity):
+        names = "m/s2, g, mm/s, um, V" if is_motion else "N, kN, V"
+        text = f"unit = {unit!r}; expected one such as {names}: give it by unit="
+        raise InputError(f"{label}: {text}")
     parts = SENSITIVITY.fullmatch(sensitivity.strip())
-    unit_below = normalize_unit(parts["unit"]) if parts else ""
-    derivatives = next((n for n, factors in tables.items() if unit_below in factors), None)
+    below = normalize_unit(parts["unit"]) if parts else ""
     number = float(parts["number"].replace(",", ".")) if parts else 0.0
-    if parts is None or derivatives is None or not number:
-        raise InputError(f"{label}: sensitivity {sensitivity!r}; {expected}")
+    if parts is None or below not in derivatives or not number:
+        usual = "100 mV/g or 50 mV/(mm/s)" if is_motion else "22 mV/N"
+        text = f"expected one such as {usual}, or base=... for one channel: give it by sensitivity="
+        raise InputError(f"{label}: sensitivity {sensitivity!r}; {text}")
     volts = number * VOLTAGES[normalize_unit(parts["volts"])]
-    return VOLTAGES[normalize_unit(unit)] * tables[derivatives][unit_below] / volts, derivatives
+    n = derivatives[below]
+    return VOLTAGES[plain or "v"] * tables[n][below] / volts, n
 
 
 def differentiate_and_advance(

@@ -67,16 +67,12 @@ class SweptSine(signals.Sine):
             raise InputError(f"{said} given: expected one of duration= and rate=")
         if signals.is_stated(self.rate):
             rate = signals.checked_quantity(Quantity("rate", "", "", 1e-9, 1e9), "rate", self.rate)
-            put(self, "duration", self._swept_range() / rate)
+            octaves = math.log2(self.last / self.first)
+            swept = self.last - self.first if self.spacing == "linear" else 60.0 * octaves
+            put(self, "duration", abs(swept) / rate)
             put(self, "rate", None)
         duration = signals.checked_quantity(signals.SECONDS, "duration", self.duration)
         put(self, "duration", duration)
-
-    def _swept_range(self) -> float:
-        """Return the range swept: Hz if linear, 60 times the octaves if logarithmic."""
-        if self.spacing == "linear":
-            return abs(self.last - self.first)
-        return 60.0 * abs(math.log2(self.last / self.first))
 
     @property
     def label(self) -> str:
@@ -122,16 +118,13 @@ class SweptSine(signals.Sine):
         self.check_piece_count(end, max_phase_step(accuracy), "sweep")
         phases = equal_nodes(0.0, end, max_phase_step(accuracy))
         nodes = self._times_of_phases(phases)
+        corners = [0.0, *self._corner_times(), self.duration]
         nodes[0], nodes[-1] = 0.0, self.duration
-        nodes = np.union1d(nodes, self._corner_times())
-        wanted = accuracy * self._peak_level()
+        nodes = np.union1d(nodes, corners)
+        wanted = accuracy * (float(self.level(corners).max()) or 1.0)
         while (parts := np.ceil((self._error_bounds(nodes) / wanted) ** 0.25 - 1e-3)).max() > 1.0:
             nodes = subdivide(nodes, np.maximum(parts, 1.0).astype(int))
         return Pieces.interpolate(nodes, self, float(self._error_bounds(nodes).max()))
-
-    def _peak_level(self) -> float:
-        ends = np.array([0.0, *self._corner_times(), self.duration])
-        return float(self.level(ends).max()) or 1.0
 
     def _corner_times(self) -> list[float]:
         if isinstance(self.acceleration, float):
