@@ -27,13 +27,14 @@ from .laboratory.analysis.frf import frf as frf
 from .laboratory.analysis.halves import halves as halves
 from .laboratory.analysis.harmonics import harmonics as harmonics
 from .laboratory.analysis.order_tracking import track_orders as track_orders
-from .laboratory.analysis.psd import psd as psd
 from .laboratory.analysis.shock_spectrum import shock_spectrum as shock_spectrum
-from .laboratory.analysis.spectrogram import spectrogram as spectrogram
+from .laboratory.analysis.spectra import psd as psd
+from .laboratory.analysis.spectra import spectrogram as spectrogram
 from .laboratory.channel_table import channels as channels
 from .laboratory.curve_files import read_curve as read_curve
-from .laboratory.hammer import Hammer as Hammer
 from .laboratory.level_control import LevelControl as LevelControl
+from .laboratory.pulses import Hammer as Hammer
+from .laboratory.pulses import Shock as Shock
 from .laboratory.random_vibration import Random as Random
 from .laboratory.record import record as record
 from .laboratory.record_files import read_record as read_record
@@ -44,7 +45,6 @@ from .laboratory.sampled import Sampled as Sampled
 from .laboratory.sensors import Sensor as Sensor
 from .laboratory.sensors import measure as measure
 from .laboratory.shake import shake as shake
-from .laboratory.shock import Shock as Shock
 from .laboratory.stepped_sine import SteppedSine as SteppedSine
 from .laboratory.swept_sine import SweptSine as SweptSine
 from .model import Drive as Drive

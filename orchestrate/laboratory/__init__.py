@@ -8,9 +8,8 @@ module                    idea
 :mod:`.swept_sine`        a sine of moving frequency
 :mod:`.stepped_sine`      a sine that settles at one frequency after the other
 :mod:`.random_vibration`  a power spectral density
-:mod:`.shock`             a classical pulse
+:mod:`.pulses`            a classical shock, and a knock on a half
 :mod:`.sampled`           a record played again
-:mod:`.hammer`            a knock on a half
 :mod:`.level_control`     a sine whose level a controller holds, on a shaker
 :mod:`.shake`             time histories and impacts under any of these
 :mod:`.reconstruction`    what the masses do between the samples of a history
