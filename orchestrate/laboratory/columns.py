@@ -218,11 +218,7 @@ class ColumnAssignment:
 
 
 def convert_to_si(
-    table: Columns,
-    columns: Named,
-    unit: ByChannel = None,
-    sensitivity: ByChannel = None,
-    setup_file: str = "",
+    table: Columns, columns: Named, unit: ByChannel, sensitivity: ByChannel, setup_file: str
 ) -> tuple[Floats | None, dict[str, Floats], dict[str, int], dict[str, str]]:
     """Convert a file's columns to SI.
 
@@ -259,7 +255,7 @@ def convert_to_si(
             expected = f"expected volts: a sensitivity does not act on a column in {own}"
             raise InputError(f"{label}: sensitivity {sensor}; {expected}")
         channels[name] = scaled_values(table, column, factor)
-    return time, channels, derivatives, read_as | unit_attributes(used, unit, units)
+    return time, channels, derivatives, read_as | unit_attributes(used, units)
 
 
 def times_in_s(table: Columns, column: Column, unit: str) -> Floats | None:
@@ -276,9 +272,7 @@ def times_in_s(table: Columns, column: Column, unit: str) -> Floats | None:
     return time
 
 
-def unit_attributes(
-    channels: Mapping[str, Column], unit: ByChannel, units: Mapping[str, str]
-) -> dict[str, str]:
+def unit_attributes(channels: Mapping[str, Column], units: Mapping[str, str]) -> dict[str, str]:
     """Return a record's attributes ``unit``, ``unit_in_file`` (if it differs), ``time_unit``."""
     own = ", ".join(dict.fromkeys(one.unit for one in channels.values() if one.unit))
     used = ", ".join(dict.fromkeys(units.get(name, one.unit) for name, one in channels.items()))

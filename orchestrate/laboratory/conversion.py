@@ -119,7 +119,7 @@ def number_by_channel(
 
 
 def factor_and_derivatives(
-    label: str, unit: str, sensitivity: str = "", tables: Tables = OF_MOTIONS
+    label: str, unit: str, sensitivity: str, tables: Tables
 ) -> tuple[float, int]:
     """Return the factor from a column's unit to SI, and how many derivatives make acceleration.
 
@@ -146,7 +146,7 @@ def factor_and_derivatives(
 
 
 def differentiate_and_advance(
-    values: Floats, rate: float, derivatives: int, delay: float = 0.0
+    values: Floats, rate: float, derivatives: int, delay: float
 ) -> Floats:
     """Return a channel's derivative of an order, earlier by a delay in s, by its spectrum."""
     from scipy.fft import irfft, rfft, rfftfreq

@@ -11,7 +11,7 @@ UNEVEN = 0.05  # largest distance of a time from equal steps, parts of a step
 
 
 def make_times_equal(
-    times: Floats, rate: float | None, first_row: int = 0, resample: bool = False
+    times: Floats, rate: float | None, first_row: int, resample: bool
 ) -> tuple[Floats, float, str]:
     """Return equally spaced times, their rate in Hz, and what was done to make them equal.
 
