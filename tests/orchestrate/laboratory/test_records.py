@@ -12,7 +12,7 @@ import xarray as xr
 from scipy.io import wavfile
 
 import orchestrate
-from orchestrate import InputError, Sampled, read_record, reader_process, record, write_record
+from orchestrate import InputError, Sampled, read_record, reader_process, write_record
 from orchestrate.laboratory import record_files
 from orchestrate.laboratory.columns import assign_columns
 from orchestrate.laboratory.record_mat import read_mat
@@ -34,16 +34,17 @@ def refused(path, words, **options):
 @pytest.mark.parametrize("ending", [".csv", ".txt", ".uff", ".unv", ".mat", ".nc"])
 @pytest.mark.parametrize("start", ordinary([1.25, 0.0]))
 def test_there_and_back_to_the_last_digit(tmp_path, ending, start):
-    data = drawn(start=start, force1=np.sqrt(np.arange(300.0)))
+    words = {"sensors": "of a kind", "title": "test 1"}
+    data = drawn(start=start, force1=np.sqrt(np.arange(300.0)), **words)
     path = write_record(data, tmp_path / f"test{ending}")
     assert path == tmp_path / f"test{ending}" and list(tmp_path.iterdir()) == [path]
+    assert data.attrs["source"] == "measured"
     again = read_record(path)
     same(again, data)
     assert {again[name].attrs["units"] for name in CHANNELS} == {"m/s2"}
-    assert again.force1.attrs["units"] == "N"
-    if ending == ".nc":
-        named = data.assign_attrs(sensors="of a kind", title="test 1")
-        assert read_record(write_record(named, path)).identical(named)
+    assert again.force1.attrs["units"] == "N" and again.time.attrs["units"] == "s"
+    assert all(again[name].attrs["long_name"] for name in again.variables)
+    assert ending != ".nc" or again.identical(data)
     alone = data[["acceleration2"]].assign_attrs(data.attrs)
     same(read_record(write_record(alone, path)), alone)
 
@@ -381,14 +382,6 @@ def test_a_record_is_played_again():
     assert (np.array(again.acceleration) == data.box_acceleration.values).all()
     with pytest.raises(InputError, match="record: expected one with box_acceleration"):
         Sampled.from_record(data[["acceleration1"]])
-
-
-def test_numbers_of_a_record_that_was_made_have_their_units():
-    data = record(sample_rate=10.0, acceleration1=np.arange(9.0))
-    assert set(data.data_vars) == {"acceleration1"} and data.acceleration1.dims == ("time",)
-    assert data.attrs["sample_rate"] == 10.0 and data.attrs["source"] == "measured"
-    assert data.acceleration1.attrs["units"] == "m/s2" and data.time.attrs["units"] == "s"
-    assert all(data[name].attrs["long_name"] for name in data.variables)
 
 
 @pytest.mark.parametrize("value", [3, None, b"a.csv"])
