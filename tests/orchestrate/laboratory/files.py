@@ -4,6 +4,7 @@ import numpy as np
 
 from orchestrate import Structure, record
 
+BEAM = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.007, e=0.6)
 G = 9.80665
 RATE = 5120.0
 CHANNELS = ("box_acceleration", "acceleration1", "acceleration2")

@@ -25,11 +25,9 @@ from orchestrate.laboratory.analysis.knocks import Knocks
 
 from ...fmu.event_driven import Motion
 from ...sparing import ordinary
-from .files import random_structure
+from . import files
 
-BEAM = Structure.from_halves(
-    m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.009, e=0.6, clearance=1e-3
-)
+BEAM = files.BEAM.replace(clearance=1e-3)
 KNOCK = Hammer(peak=20.0, width=0.004, at=0.05, duration=0.5)
 
 
@@ -173,7 +171,7 @@ def test_a_continuous_force_is_averaged_as_the_box_is():
 @pytest.mark.parametrize("seed", ordinary(range(20)))
 def test_noisy_knocks_make_the_guess(seed, tmp_path):
     """Frequencies within 2 %, damping within 20 %, masses within 5 %."""
-    draw, beam = np.random.default_rng(seed).uniform, random_structure(seed, clearance=0.01)
+    draw, beam = np.random.default_rng(seed).uniform, files.random_structure(seed, clearance=0.01)
     records, f1 = [], beam.f1
     for half in (1, 2):
         knock = knocks(3, 5.0, peak=draw(5.0, 20.0), width=draw(0.1, 0.2) / f1, half=half)

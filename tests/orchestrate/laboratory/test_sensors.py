@@ -10,17 +10,16 @@ import pytest
 from scipy import signal
 from scipy.linalg import expm
 
-from orchestrate import Hammer, Sampled, Sensor, Structure, SweptSine, measure, shake
+from orchestrate import Hammer, Sampled, Sensor, SweptSine, measure, shake
 from orchestrate.laboratory.analog_filter import anti_aliasing_zeros_and_poles, phi_functions
 
 from ...sparing import ordinary
+from .files import BEAM, CHANNELS
 
-BEAM = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.007, e=0.6)
 BOX = Sampled(
     acceleration=20.0 * np.sin(2.0 * np.pi * 47.0 * np.arange(300) / 1000.0), sample_rate=1000.0
 )
 SENSOR = Sensor(bandwidth=2000.0, sample_rate=5120.0, antialiasing=False)
-CHANNELS = ("box_acceleration", "acceleration1", "acceleration2")
 
 
 def state_space(sensor):

@@ -13,9 +13,8 @@ from orchestrate.show.labels import title_from_attributes
 
 from ...fmu.event_driven import Motion
 from ...sparing import ordinary
-from .files import random_structure
+from .files import BEAM, random_structure
 
-BEAM = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.007, e=0.6)
 SWEEP = SweptSine(first=40.0, last=52.0, duration=1.5, acceleration=4.9)
 OPEN = (0.0, 2e-4, 0.0, 0.0)  # a start with a gap: the reference knows of no permanent contact
 SIGNALS = {

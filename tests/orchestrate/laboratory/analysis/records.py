@@ -7,16 +7,16 @@ import numpy as np
 import xarray as xr
 
 import orchestrate
-from orchestrate import Random, Structure, SweptSine, shake
+from orchestrate import Random, SweptSine, shake
 
-DAMPED = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.04, zeta2=0.04, e=0.6)
-LIGHT = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.01, zeta2=0.01, e=0.6)
+from ..files import BEAM, CHANNELS
+
+HEAVY, DAMPED, LIGHT = (BEAM.replace(zeta1=zeta, zeta2=zeta) for zeta in (0.1, 0.04, 0.01))
 SWEEP = SweptSine(first=30.0, last=60.0, duration=20.0, acceleration=5.0)
 ANALYSES = (
     *("frf", "psd", "track_orders", "harmonics", "spectrogram"),
     *("shock_spectrum", "probability_density"),
 )
-CHANNELS = ("box_acceleration", "acceleration1", "acceleration2")
 
 
 def make(rate, *channels, begin=0.0, **attributes):

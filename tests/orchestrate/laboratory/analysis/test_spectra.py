@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from orchestrate import Structure, frf, psd, spectrogram
+from orchestrate import frf, psd, spectrogram
 
 from ....sparing import ordinary
-from .records import make, random_record, transfer
+from .records import HEAVY, make, random_record, transfer
 
-HEAVILY = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.1, zeta2=0.1, e=0.6)
 BAND = slice(14.0, 140.0)
 
 
@@ -23,10 +22,10 @@ def complex_response(answer, estimator="H1", channel="acceleration1"):
 @pytest.mark.parametrize("seed", ordinary(range(2)))
 def test_response_of_a_bonded_structure_is_its_transfer_function(seed, estimator):
     """Without noise all that is left is leakage, which the coherence and its error know."""
-    answer = frf(random_record(HEAVILY.as_bonded(), seed, 80.0), resolution=0.2)
+    answer = frf(random_record(HEAVY.as_bonded(), seed, 80.0), resolution=0.2)
     for channel in ("acceleration1", "acceleration2"):
         frequency, found = complex_response(answer, estimator, channel)
-        expected = transfer(HEAVILY, frequency)
+        expected = transfer(HEAVY, frequency)
         error = answer.random_error.sel(channel=channel, frequency=BAND).values
         assert (np.abs(found - expected) < 5.0 * error * np.abs(expected)).all()
         assert np.abs(found / expected - 1.0).max() < 0.01
