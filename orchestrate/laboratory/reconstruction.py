@@ -231,8 +231,8 @@ def solve_smooth_accelerations(motion: Motion, sample_rate: float) -> SmoothAcce
     drive = PolynomialSignal(starts, nodes[1:], motion.pieces.derivatives_at(starts))
     series = motion.displacement_series(states, touching, starts)
     forces = [*motion.force_series(starts), 0.0]  # no derivative of the last order
-    parts = zip(series[:-1], series[1:], forces, strict=True)
-    felt = np.stack([motion.mass_accelerations(x, v, touching, force) for x, v, force in parts])
+    rows = zip(series[:-1], series[1:], forces, strict=True)
+    felt = np.stack([motion.mass_accelerations(x, v, touching, force) for x, v, force in rows])
     felt[0] -= motion.steady
     one, two = (PolynomialSignal(starts, nodes[1:], felt[:, i].T) for i in (0, 1))
     return SmoothAccelerations(times, drive, one, two, error)
@@ -269,6 +269,6 @@ def integrate_between_samples(
     target = np.searchsorted(motion.times, nodes[last + 1])
     exact = np.append(motion.times, np.inf)[target] == nodes[last + 1]
     samples = target[exact]
-    off = (moved[exact] - motion.states[samples]).T.reshape(2, 2, -1)
-    accelerations = motion.mass_accelerations(*off, motion.touching[samples])
+    x, v = (moved[exact] - motion.states[samples]).T.reshape(2, 2, -1)
+    accelerations = motion.mass_accelerations(x, v, motion.touching[samples])
     return states, touching, float(np.abs(accelerations).max(initial=0.0))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from operator import itemgetter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,7 +102,7 @@ def halves(
         if (struck := [fit["knocked"] for fit in fits]) != [1, 2]:
             raise InputError(f"other: both knock on half {struck[0]}; expected one on each")
         (m1, f1, zeta1), (m2, f2, zeta2) = ([fit[name] for name in FITTED] for fit in fits)
-        numbers = {"m1": m1, "m2": m2, "f1": f1, "f2": f2, "zeta1": zeta1, "zeta2": zeta2}
+        numbers: Any = {"m1": m1, "m2": m2, "f1": f1, "f2": f2, "zeta1": zeta1, "zeta2": zeta2}
         structure = Structure.from_halves(**numbers)
     if output is not None:
         write(output, structure=structure)
