@@ -198,7 +198,7 @@ def test_damaged_text_is_refused(tmp_path, text, words):
 
 
 @pytest.mark.parametrize("ending", [".uff", ".mat", ".nc", ".wav", ".tdms"])
-@pytest.mark.parametrize("damage", ["cut", "noise"])
+@pytest.mark.parametrize("damage", ordinary(["cut", "noise"]))
 def test_damaged_files_are_refused(tmp_path, ending, damage):
     path = tmp_path / f"test{ending}"
     if ending == ".wav":
@@ -259,15 +259,17 @@ def test_a_stored_result_of_shake_is_a_record_if_it_has_no_impacts(tmp_path):
     shaken.to_netcdf(path)
     assert read_record(path).acceleration1.equals(drawn(300).acceleration1)
     shaken.assign(impulse=("impact", [1.0])).to_netcdf(path)
-    refused(path, "leave out the impacts")
+    with pytest.raises(InputError, match="leave out the impacts"):
+        record_files.read_netcdf(path)
 
 
 def test_matlabs_matrices_and_rates(tmp_path):
     path, data = tmp_path / "a.mat", drawn()
     matrix = np.stack([data[name].values for name in CHANNELS], axis=1)
     scipy.io.savemat(path, {"data": matrix, "Fs": RATE, "remark": "x"})
-    refused(path, 'column "data[0]" (base)')
-    same(read_record(path, unit="m/s2"), data)
+    again = read_record(path, unit="m/s2")
+    same(again, data)
+    assert again.attrs["columns"].startswith('base "data[0]"')
 
 
 def test_nested_structures_of_matlab(tmp_path):
