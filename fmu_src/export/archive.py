@@ -34,20 +34,17 @@ def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
     try:
         with os.fdopen(handle, "wb") as stream, zipfile.ZipFile(stream, "w") as archive:
             for entry in sorted(files, key=lambda n: (n != "modelDescription.xml", n)):
-                archive.writestr(archive_entry(entry), files[entry])
+                header = zipfile.ZipInfo(entry, EPOCH)
+                header.compress_type = zipfile.ZIP_DEFLATED
+                header.create_system = 3
+                is_library = entry.endswith((".so", ".dll", ".dylib"))
+                header.external_attr = (0o755 if is_library else 0o644) << 16
+                archive.writestr(header, files[entry])
         temporary.chmod(0o644)
         temporary.replace(path)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
-
-
-def archive_entry(name: str) -> zipfile.ZipInfo:
-    entry = zipfile.ZipInfo(name, EPOCH)
-    entry.compress_type = zipfile.ZIP_DEFLATED
-    entry.create_system = 3
-    entry.external_attr = (0o755 if name.endswith((".so", ".dll", ".dylib")) else 0o644) << 16
-    return entry
 
 
 def read_folder(folder: Path, prefix: str = "") -> dict[str, bytes]:

@@ -47,10 +47,9 @@ def library_guid(source: Path) -> str:
 
 
 def loop_files(source: Path) -> Files:
-    files = {source.name: source.read_bytes()}
-    if HEADER.encode() in files[source.name]:
-        files[HEADER] = (LOOPS / HEADER).read_bytes()
-    return files
+    text = source.read_bytes()
+    header = {HEADER: (LOOPS / HEADER).read_bytes()} if HEADER.encode() in text else {}
+    return {source.name: text, **header}
 
 
 def files_with_translated_headers(source: Path) -> Files:

@@ -43,12 +43,10 @@ def icon_path(version: str) -> str:
 
 def terminals_xml(model: Model) -> bytes:
     root = ET.Element("fmiTerminalsAndIcons", fmiVersion="3.0")
-    if model.terminals:
-        parent = ET.SubElement(root, "Terminals")
+    parent = ET.SubElement(root, "Terminals")
     for terminal in model.terminals:
         attributes = {"name": terminal.name, "matchingRule": "bus"}
-        attributes["description"] = terminal.description
-        element = ET.SubElement(parent, "Terminal", attributes)
+        element = ET.SubElement(parent, "Terminal", attributes, description=terminal.description)
         for member, variable in terminal.members.items():
             named = {"variableName": variable, "memberName": member, "variableKind": "signal"}
             ET.SubElement(element, "TerminalMemberVariable", named)

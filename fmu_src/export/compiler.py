@@ -75,19 +75,16 @@ def run_compiler(command: Iterable[str], folder: str | Path, target: str) -> Non
         raise CannotExport(f"the C compiler failed for {target}: {lines[0]}")
 
 
-def zig_target_options(platform: str) -> list[str]:
+def targeted_ziglang_command(program: str, platform: str) -> list[str]:
     target = PLATFORMS[platform]
-    return ["-target", target.zig_target, f"-mcpu={target.cpu}"]
+    return [*ziglang_command(program), "-target", target.zig_target, f"-mcpu={target.cpu}"]
 
 
 def compile_command(platform: str) -> list[str]:
-    is_windows = platform.endswith("-windows")
-    compiler = own_compiler_command(platform) or [
-        *ziglang_command("cc"),
-        *zig_target_options(platform),
-        *CLANG_FLAGS,
-    ]
-    return [*compiler, *FLAGS, *(WINDOWS_FLAGS if is_windows else ["-fPIC"]), "-c"]
+    compiler = own_compiler_command(platform)
+    compiler = compiler or [*targeted_ziglang_command("cc", platform), *CLANG_FLAGS]
+    own = WINDOWS_FLAGS if platform.endswith("-windows") else ("-fPIC",)
+    return [*compiler, *FLAGS, *own, "-c"]
 
 
 def link_command(platform: str, title: str, objects: Iterable[str]) -> list[str]:
@@ -95,13 +92,7 @@ def link_command(platform: str, title: str, objects: Iterable[str]) -> list[str]
     own = own_compiler_command(platform)
     if own:
         return [*own, "-shared", "-s", "-o", file, *objects]
-    command = [
-        *ziglang_command("build-lib"),
-        *zig_target_options(platform),
-        *LINK_FLAGS,
-        "--name",
-        title,
-    ]
+    command = [*targeted_ziglang_command("build-lib", platform), *LINK_FLAGS, "--name", title]
     if platform.endswith("-windows"):
         command += ["-fno-entry", "-fno-emit-implib"]
         command += [f"-lapi-ms-win-crt-{part}-l1-1-0" for part in WINDOWS_PARTS]
@@ -113,22 +104,25 @@ def link_command(platform: str, title: str, objects: Iterable[str]) -> list[str]
 
 
 def compile_kernel(platform: str, source: bytes) -> bytes:
-    return compile_object(
-        (*compile_command(platform), "kernel.c", "-o", "kernel.o"), source, platform
-    )
+    return compile_object(tuple(compile_command(platform)), source, platform)
 
 
 @functools.cache
 def compile_object(command: tuple[str, ...], source: bytes, target: str) -> bytes:
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as folder:
         (Path(folder) / "kernel.c").write_bytes(source)
-        run_compiler(command, folder, target)
+        run_compiler([*command, "kernel.c", "-o", "kernel.o"], folder, target)
         return (Path(folder) / "kernel.o").read_bytes()
 
 
 def compile_and_link(platform: str, title: str, files: Mapping[str, bytes]) -> bytes:
     """Compile and link named files to a library called ``title``; return its bytes."""
-    files = {**files, **(windows_sources() if platform.endswith("-windows") else {})}
+    if platform.endswith("-windows"):
+        require_package("ziglang", "brings the C library of Windows")
+        spec = importlib.util.find_spec("ziglang")
+        assert spec is not None and spec.origin is not None
+        library = Path(spec.origin).parent / WINDOWS_FOLDER
+        files = {**files, **{name: (library / name).read_bytes() for name in WINDOWS_SOURCES}}
     objects = [file for file in files if file.endswith(".o")]
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as place:
         folder = Path(place)
@@ -141,14 +135,6 @@ def compile_and_link(platform: str, title: str, files: Mapping[str, bytes]) -> b
         return (folder / f"{title}{PLATFORMS[platform].suffix}").read_bytes()
 
 
-def windows_sources() -> dict[str, bytes]:
-    require_package("ziglang", "brings the C library of Windows")
-    spec = importlib.util.find_spec("ziglang")
-    assert spec is not None and spec.origin is not None
-    folder = Path(spec.origin).parent / WINDOWS_FOLDER
-    return {name: (folder / name).read_bytes() for name in WINDOWS_SOURCES}
-
-
 def link_for_platforms(
     names: Iterable[str], title: str, kernel: bytes, files: Mapping[str, bytes]
 ) -> dict[str, bytes]:
@@ -156,17 +142,17 @@ def link_for_platforms(
 
     def link_or_reason(platform: str) -> bytes | CannotExport:
         try:
-            return compile_and_link(
-                platform, title, {**files, "kernel.o": compile_kernel(platform, kernel)}
-            )
+            compiled = {**files, "kernel.o": compile_kernel(platform, kernel)}
+            return compile_and_link(platform, title, compiled)
         except CannotExport as reason:
             return reason
 
     wanted = tuple(names)
     with ThreadPoolExecutor(os.cpu_count()) as threads:
-        results = dict(zip(wanted, threads.map(link_or_reason, wanted), strict=True))
-    made = {name: result for name, result in results.items() if isinstance(result, bytes)}
-    reasons = [result for result in results.values() if isinstance(result, CannotExport)]
+        results = list(threads.map(link_or_reason, wanted))
+    pairs = zip(wanted, results, strict=True)
+    made = {name: result for name, result in pairs if isinstance(result, bytes)}
+    reasons = [result for result in results if isinstance(result, CannotExport)]
     if not made:
         raise reasons[0]
     for left_out in reasons:

@@ -5,23 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from xml.etree import ElementTree as ET
 
-from ..runtime.table import Model, Variable
+from ..runtime.table import Model
 from . import description_common as common
 
-PYTHON = {
-    "needsExecutionTool": "true",
+SHARED = {  # capabilities
     "canHandleVariableCommunicationStepSize": "true",
     "canNotUseMemoryManagementFunctions": "true",
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
 }
-NATIVE = {
-    "canHandleVariableCommunicationStepSize": "true",
-    "maxOutputDerivativeOrder": "1",
-    "canNotUseMemoryManagementFunctions": "true",
-    "canGetAndSetFMUstate": "true",
-    "canSerializeFMUstate": "true",
-}
+PYTHON = {"needsExecutionTool": "true", **SHARED}
+NATIVE = {"maxOutputDerivativeOrder": "1", **SHARED}
 
 
 def fmi2_xml(
@@ -37,15 +31,11 @@ def fmi2_xml(
             ET.SubElement(files, "File", name=name)
     variables = common.add_shared_elements(root, model)
     for variable in model.variables:
-        add_variable(variables, variable)
+        attributes = common.variable_attributes(variable, variable.slot)
+        scalar = ET.SubElement(variables, "ScalarVariable", attributes)
+        common.add_type_attributes(ET.SubElement(scalar, variable.type), variable)
     add_model_structure(root, model)
     return common.xml_bytes(root)
-
-
-def add_variable(parent: ET.Element, variable: Variable) -> None:
-    attributes = common.variable_attributes(variable, variable.slot)
-    scalar = ET.SubElement(parent, "ScalarVariable", attributes)
-    common.add_type_attributes(ET.SubElement(scalar, variable.type), variable)
 
 
 def add_model_structure(root: ET.Element, model: Model) -> None:
@@ -56,11 +46,8 @@ def add_model_structure(root: ET.Element, model: Model) -> None:
     unknowns = ET.SubElement(structure, "InitialUnknowns")
     for variable in model.variables:
         if variable.causality == "output":
-            for parent, names in (
-                (outputs, variable.dependencies),
-                (unknowns, variable.initial_dependencies),
-            ):
-                known = sorted(int(index[name]) for name in names)
-                dependencies = " ".join(map(str, known))
+            initial = variable.initial_dependencies
+            for parent, names in ((outputs, variable.dependencies), (unknowns, initial)):
+                dependencies = " ".join(sorted((index[name] for name in names), key=int))
                 place = index[variable.name]
                 ET.SubElement(parent, "Unknown", index=place, dependencies=dependencies)

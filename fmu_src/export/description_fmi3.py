@@ -16,41 +16,31 @@ CAPABILITIES = {
     "canSerializeFMUState": "true",
     "maxOutputDerivativeOrder": "1",
 }
-EVENT_MODE = {"hasEventMode": "true"}  # of models with a clock
 
 
 def fmi3_xml(model: Model, token: str) -> bytes:
     """Return the model description, as bytes that depend on nothing but the arguments."""
     root = common.root_element(model, fmiVersion="3.0", instantiationToken=token)
-    capabilities = {**CAPABILITIES, **(EVENT_MODE if model.clock else {})}
+    capabilities = {**CAPABILITIES, **({"hasEventMode": "true"} if model.clock else {})}
     ET.SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **capabilities})
     variables = common.add_shared_elements(root, model)
-    add_time(variables, model)
+    time = Variable("time", "Time", "independent")
+    attributes = common.variable_attributes(time, model.time_slot)
+    ET.SubElement(variables, "Float64", attributes, unit="s")
     for variable in model.variables:
         if not variable.series:
-            add_variable(variables, variable)
+            attributes = common.variable_attributes(variable, variable.slot)
+            typed = ET.SubElement(variables, TYPES[variable.type], attributes)
+            common.add_type_attributes(typed, variable)
     for i, array in enumerate(model.arrays):
         add_array(variables, model, array, ARRAY_BASE + i)
-    add_clock(variables, model)
+    if model.clock:
+        clock = {"name": model.clock.name, "description": model.clock.description}
+        kind = {"causality": "output", "intervalVariability": "triggered"}
+        reference = {"valueReference": str(CLOCK_REFERENCE)}
+        ET.SubElement(variables, "Clock", {**clock, **reference, **kind})
     add_model_structure(root, model)
     return common.xml_bytes(root)
-
-
-def add_time(parent: ET.Element, model: Model) -> None:
-    attributes = {
-        "name": "time",
-        "valueReference": str(model.time_slot),
-        "description": "Time",
-        "causality": "independent",
-        "variability": "continuous",
-        "unit": "s",
-    }
-    ET.SubElement(parent, "Float64", attributes)
-
-
-def add_variable(parent: ET.Element, variable: Variable) -> None:
-    attributes = common.variable_attributes(variable, variable.slot)
-    common.add_type_attributes(ET.SubElement(parent, TYPES[variable.type], attributes), variable)
 
 
 def array_elements(model: Model, array: Array) -> tuple[Variable, ...]:
@@ -66,28 +56,13 @@ def add_array(parent: ET.Element, model: Model, array: Array, reference: int) ->
     ET.SubElement(typed, "Dimension", start=str(array.size))
 
 
-def add_clock(parent: ET.Element, model: Model) -> None:
-    if model.clock:
-        attributes = {
-            "name": model.clock.name,
-            "valueReference": str(CLOCK_REFERENCE),
-            "description": model.clock.description,
-            "causality": "output",
-            "intervalVariability": "triggered",
-        }
-        ET.SubElement(parent, "Clock", attributes)
-
-
 def add_model_structure(root: ET.Element, model: Model) -> None:
     structure = ET.SubElement(root, "ModelStructure")
-    calculated: list[tuple[int, tuple[Variable, ...]]]
     calculated = [(v.slot, (v,)) for v in model.variables if v.causality == "output"]
-    arrays = [
-        (ARRAY_BASE + i, array_elements(model, array)) for i, array in enumerate(model.arrays)
-    ]
-    calculated += [
-        (reference, members) for reference, members in arrays if members[0].causality == "output"
-    ]
+    for i, array in enumerate(model.arrays):
+        members = array_elements(model, array)
+        if members[0].causality == "output":
+            calculated.append((ARRAY_BASE + i, members))
     if model.clock:
         calculated.append((CLOCK_REFERENCE, ()))
     slots = {variable.name: variable.slot for variable in model.variables}

@@ -12,26 +12,20 @@ def documentation_files(
     folder: str, digest: str, form: str, variables: tuple[Variable, ...]
 ) -> Files:
     """Return ``documentation/`` (the page tells each form's own truth), icon, and companions."""
+    import jinja2
+
     place = ROOT / "models" / folder
     files = read_folder(place / "documentation", "documentation/")
     template = files.pop("documentation/index.html.in").decode()
-    files["documentation/index.html"] = model_page(template, folder, digest, form, variables)
-    files.update(read_folder(place / "reference", "documentation/reference/"))
-    files[icon_path(form[:4])] = (place / "model.png").read_bytes()
-    return {**files, **companion_files(load_model(folder))}
-
-
-def model_page(
-    template: str, folder: str, digest: str, form: str, variables: tuple[Variable, ...]
-) -> bytes:
-    import jinja2
-
     environment = jinja2.Environment(
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         keep_trailing_newline=True,
         loader=jinja2.FileSystemLoader(ROOT / "models"),
     )
-    known = {"digest": digest, "form": form, "variables": variables}
-    page = environment.from_string(template).render(model=load_model(folder), **known)
-    return page.encode()
+    model = load_model(folder)
+    known = {"model": model, "digest": digest, "form": form, "variables": variables}
+    files["documentation/index.html"] = environment.from_string(template).render(known).encode()
+    files.update(read_folder(place / "reference", "documentation/reference/"))
+    files[icon_path(form[:4])] = (place / "model.png").read_bytes()
+    return {**files, **companion_files(model)}

@@ -35,37 +35,28 @@ def c_number(value: float) -> str:
 def c_variable_row(variable: Variable, model: Model) -> str:
     minimum = -math.inf if variable.minimum is None else variable.minimum
     maximum = math.inf if variable.maximum is None else variable.maximum
+    texts = variable.name, variable.unit, variable.range_text()
+    set_flag = model.set_flag_by_slot.get(variable.slot, 0)
+    numbers = variable.input_derivatives, set_flag, model.rate_slot(variable)
     cells = [
-        c_string(variable.name),
-        c_string(variable.unit),
-        c_string(variable.range_text()),
+        *map(c_string, texts),
         variable.type.upper(),
-        str(int(variable.calculated)),
-        str(int(variable.fixed)),
-        c_number(variable.start),
-        c_number(minimum),
-        c_number(maximum),
-        str(variable.input_derivatives),
-        str(model.set_flag_by_slot.get(variable.slot, 0)),
-        str(model.rate_slot(variable)),
-        str(int(bool(variable.series))),
+        *map(str, map(int, (variable.calculated, variable.fixed))),
+        *map(c_number, (variable.start, minimum, maximum)),
+        *map(str, (*numbers, int(bool(variable.series)))),
     ]
     return "    {" + ", ".join(cells) + "},"
 
 
 def shim_macros(model: Model, slots: dict[str, int], real_outputs: bool) -> dict[str, str]:
-    inputs = [
-        f"orders 1 to {v.input_derivatives} of {v.name}"
-        for v in model.variables
-        if v.input_derivatives
-    ]
+    smooth = [v for v in model.variables if v.input_derivatives]
+    inputs = [f"orders 1 to {v.input_derivatives} of {v.name}" for v in smooth]
+    count_slot = slots[model.series_count] if model.arrays else 0
     return {
         "MEMORY_SIZE": str(model.memory_size),
         "SKIP_FIRST": str(model.written_only[0]),
         "SKIP_COUNT": str(model.written_only[1]),
-        "FILLS_SERIES(memory)": f"(memory[{slots[model.series_count]}] > 0)"
-        if model.arrays
-        else "1",
+        "FILLS_SERIES(memory)": f"(memory[{count_slot}] > 0)" if model.arrays else "1",
         "LIMITED_CODE": str(model.limited),
         "TIME_SLOT": str(model.time_slot),
         "STOP_SLOT": str(model.stop_slot),

@@ -8,7 +8,7 @@ from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
-from ..runtime.table import BOOLEAN, REAL, Model, Variable
+from ..runtime.table import BOOLEAN, REAL, Model
 from .archive import guid_of_files, write_archive
 from .compiler import link_for_platforms
 from .description_fmi2 import fmi2_xml
@@ -19,16 +19,17 @@ from .model_header import model_header
 from .platforms import binary_files, default_platforms
 from .source_code import c_file_names, kernel_c_source, sources_folder
 from .sources import (
+    ROOT,
     Files,
     exporter_files,
     load_model,
     model_digest,
     model_sources,
-    read_sources,
     require_unedited_sources,
     text_files,
 )
 
+SHARED = ("names.h", "core.h", "core.c", "self_test.c")
 HEADERS = {
     "fmi2": ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
     "fmi3": ("fmi3Functions.h", "fmi3FunctionTypes.h", "fmi3PlatformTypes.h"),
@@ -43,29 +44,22 @@ STANDARD_PREFIX = b"""\
 #define fmi2FullName(name) name
 #endif
 """
-SHIM = {
-    "fmi2": ("names.h", "core.h", "core.c", "self_test.c", "fmi2.c"),
-    "fmi3": ("names.h", "core.h", "core.c", "self_test.c", "fmi3.c", "fmi3_absent.c"),
-}
 
 
 def shim_sources(version: str) -> Files:
-    found = read_sources(*(f"runtime/native/{name}" for name in SHIM[version]))
-    return {Path(name).name: content for name, content in found.items()}
+    names = *SHARED, f"{version}.c"
+    return {name: (ROOT / "runtime" / "native" / name).read_bytes() for name in names}
 
 
 def fmi_headers(version: str) -> Files:
-    """Return the standard's C headers, which come with FMPy."""
+    """Return the standard's C headers, which come with FMPy: its FMI 2.0 may lack the prefix."""
     require_package("fmpy", "brings the C headers of the FMI standard")
     folder = resources.files("fmpy") / "c-code"
-    return {name: with_standard_prefix((folder / name).read_bytes()) for name in HEADERS[version]}
-
-
-def with_standard_prefix(header: bytes) -> bytes:
-    """Return FMI 2.0's header with the standard's prefix, which FMPy's copy may lack."""
-    if b"defined(FMI2_FUNCTION_PREFIX)" in header:
-        return header
-    return header.replace(NO_PREFIX, STANDARD_PREFIX)
+    headers = {name: (folder / name).read_bytes() for name in HEADERS[version]}
+    for name, text in headers.items():
+        if b"defined(FMI2_FUNCTION_PREFIX)" not in text:
+            headers[name] = text.replace(NO_PREFIX, STANDARD_PREFIX)
+    return headers
 
 
 def native_fmu_guid(folder: str, form: str) -> str:
@@ -86,18 +80,16 @@ def plain_model(model: Model) -> Model:
 
     Names and value references stay.
     """
-    scalars = [v for v in model.variables if not v.series and v.name != model.series_count]
-    variables = tuple(plain_variable(v, v.name in model.excitation) for v in scalars)
-    return replace(model, variables=variables, arrays=(), clock=None)
-
-
-def plain_variable(variable: Variable, excites: bool) -> Variable:
-    if excites:
-        return replace(variable, causality="parameter", variability="tunable", initial="exact")
-    if variable.causality != "output" or variable.type == REAL:
-        return variable
-    limits = (0.0, 1.0) if variable.type == BOOLEAN else (variable.minimum, variable.maximum)
-    return replace(variable, type=REAL, unit="1", minimum=limits[0], maximum=limits[1])
+    variables = []
+    for v in model.variables:
+        if v.name in model.excitation:
+            v = replace(v, causality="parameter", variability="tunable", initial="exact")
+        elif v.causality == "output" and v.type != REAL:
+            low, high = (0.0, 1.0) if v.type == BOOLEAN else (v.minimum, v.maximum)
+            v = replace(v, type=REAL, unit="1", minimum=low, maximum=high)
+        if not v.series and v.name != model.series_count:
+            variables.append(v)
+    return replace(model, variables=tuple(variables), arrays=(), clock=None)
 
 
 def export(folder: str, form: str, target: Path, platforms: tuple[str, ...] | None = None) -> Path:

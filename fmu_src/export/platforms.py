@@ -43,11 +43,8 @@ def platform_of_this_machine() -> str:
 
 
 def default_platforms() -> tuple[str, ...]:
-    return tuple(
-        name
-        for name in ALL
-        if name in ("x86_64-linux", "x86_64-windows", platform_of_this_machine())
-    )
+    wanted = ("x86_64-linux", "x86_64-windows", platform_of_this_machine())
+    return tuple(name for name in ALL if name in wanted)
 
 
 def select_platforms(wanted: Iterable[str]) -> tuple[str, ...]:

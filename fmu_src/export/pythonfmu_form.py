@@ -59,18 +59,14 @@ def pythonfmu_guid(folder: str) -> str:
     )
 
 
-def require_pythonfmu() -> None:
-    require_package("pythonfmu", "puts the FMU together")
-    if metadata.version("pythonfmu") != PYTHONFMU:
-        found = metadata.version("pythonfmu")
-        raise CannotExport(f"pythonfmu is {found}: expected {PYTHONFMU}, as in {EXTRA}")
-
-
 def export(folder: str, target: Path) -> Path:
-    require_pythonfmu()
+    require_package("pythonfmu", "puts the FMU together")
+    found = metadata.version("pythonfmu")
+    if found != PYTHONFMU:
+        raise CannotExport(f"pythonfmu is {found}: expected {PYTHONFMU}, as in {EXTRA}")
     model, digest = load_model(folder), source_digest(folder)
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as scratch:
-        script, package = write_sources(Path(scratch), folder, digest)
+        script, package = write_sources(Path(scratch) / "source", folder, digest)
         for name, library in compile_libraries(folder, model).items():
             (package / name).write_bytes(library)
         files = build_with_pythonfmu(script, package, Path(scratch) / "built.fmu")
@@ -82,17 +78,16 @@ def export(folder: str, target: Path) -> Path:
     return path
 
 
-def write_sources(scratch: Path, folder: str, digest: str) -> tuple[Path, Path]:
-    model = load_model(folder)
-    package = scratch / "source" / f"fmu_{digest[:12]}"
+def write_sources(target: Path, folder: str, digest: str) -> tuple[Path, Path]:
+    """Write the script and the package that pythonfmu puts into an FMU; return their paths."""
+    model, package = load_model(folder), target / f"fmu_{digest[:12]}"
     for name, content in embedded_sources(folder).items():
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_bytes(content)
-    script = scratch / "source" / f"{model.name}_{digest[:12]}.py"
+    script = target / f"{model.name}_{digest[:12]}.py"
     named = {"name": model.name, "description": model.description, "digest": digest}
-    template = (ROOT / SCRIPT).read_text(encoding="utf-8")
-    text = template.format(package=package.name, folder=folder, **named)
-    script.write_text(text, encoding="utf-8")
+    text = (ROOT / SCRIPT).read_text("utf-8")
+    script.write_text(text.format(package=package.name, folder=folder, **named), "utf-8")
     return script, package
 
 
@@ -101,10 +96,9 @@ def compile_libraries(folder: str, model: Model) -> Files:
     known = "".join(f"#define {name}\n" for name, entry in optional.items() if entry).encode()
     entry = known + (ROOT / "runtime" / "native" / "library.c").read_bytes()
     try:
-        platforms = tuple(dict.fromkeys(platform for platform, _ in LIBRARIES.values()))
-        made = link_for_platforms(
-            platforms, "kernel", kernel_c_source(folder), {"library.c": entry}
-        )
+        platforms = [platform for platform, _ in LIBRARIES.values()]
+        kernel = kernel_c_source(folder)
+        made = link_for_platforms(platforms, "kernel", kernel, {"library.c": entry})
         require_right_bits(model, made)
     except CannotExport as reason:
         warn_once(f"the FMUs of the form fmi2-python will run in pure Python: {reason}")

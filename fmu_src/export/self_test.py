@@ -22,14 +22,6 @@ CHANGE = 0.125
 MASK = (1 << 64) - 1
 
 
-def mix_into_sum(total: int, values: list[float]) -> int:
-    """Return a checksum with more values: it depends on their every bit and on their order."""
-    for value in values:
-        (bits,) = struct.unpack("<Q", struct.pack("<d", value))
-        total = ((total << 7) | (total >> 57)) & MASK ^ bits
-    return total
-
-
 @functools.cache
 def expected_sum(model: Model) -> int:
     """Return the checksum of the run by the model's Python; see :func:`sum_of_run`."""
@@ -45,7 +37,10 @@ def has_right_bits(model: Model, path: Path) -> bool:
 
 
 def sum_of_run(model: Model, memory: Any, initialize: Entry, advance: Entry) -> int:
-    """Return the checksum of a short run in a memory of zeros; half way all inputs move."""
+    """Return the checksum of a short run in a memory of zeros; half way all inputs move.
+
+    It depends on every bit of all variables, and on their order.
+    """
     total = 0
     for variable in model.variables:
         memory[variable.slot] = 0.0 if variable.calculated else float(variable.start)
@@ -57,7 +52,9 @@ def sum_of_run(model: Model, memory: Any, initialize: Entry, advance: Entry) -> 
             if variable.slot in model.set_flag_by_slot:
                 memory[model.set_flag_by_slot[variable.slot]] = 1.0
         codes.append(advance(memory, step * STEP))
-        total = mix_into_sum(total, memory[: len(model.variables)])
+        for value in memory[: len(model.variables)]:
+            (bits,) = struct.unpack("<Q", struct.pack("<d", value))
+            total = ((total << 7) | (total >> 57)) & MASK ^ bits
     if any(codes):
         raise RuntimeError(f"{model.name}: the run of the self-test fails with code {max(codes)}")
     return total

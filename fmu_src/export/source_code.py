@@ -45,15 +45,11 @@ def sources_folder(name: str, version: str, files: Files) -> Files:
     cmake = CMAKE.format(name=name, units=" ".join(c_file_names(files)), options=OPTIONS)
     inside = {**files, "CMakeLists.txt": cmake.encode()}
     if version == "fmi3":
-        inside["buildDescription.xml"] = build_description(name, c_file_names(files))
+        root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
+        configuration = ET.SubElement(root, "BuildConfiguration", modelIdentifier=name)
+        attributes = {"language": "C99", "compilerOptions": OPTIONS}
+        several = ET.SubElement(configuration, "SourceFileSet", attributes)
+        for source in c_file_names(files):
+            ET.SubElement(several, "SourceFile", name=source)
+        inside["buildDescription.xml"] = description_common.xml_bytes(root)
     return {f"sources/{file}": content for file, content in inside.items()}
-
-
-def build_description(name: str, sources: list[str]) -> bytes:
-    root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
-    configuration = ET.SubElement(root, "BuildConfiguration", modelIdentifier=name)
-    attributes = {"language": "C99", "compilerOptions": OPTIONS}
-    several = ET.SubElement(configuration, "SourceFileSet", attributes)
-    for source in sources:
-        ET.SubElement(several, "SourceFile", name=source)
-    return description_common.xml_bytes(root)

@@ -48,36 +48,30 @@ def module_guid() -> str:
     return guid_of_files({**files, **{name: model_digest(name).encode() for name in MODELS}})
 
 
-def model_files(folder: str) -> Files:
-    header = model_header(load_model(folder), module_guid(), model_digest(folder))
-    shim = {**shim_sources("fmi3"), **fmi_headers("fmi3"), "model.h": header}
-    return {
-        "kernel.c": kernel_c_source(folder),
-        **shim,
-        **read_folder(WEB),
-        HEADER: (LOOPS / HEADER).read_bytes(),
-    }
-
-
 def compile_module() -> bytes:
     compiler = [*ziglang_command("cc"), *TARGET]
     names = [*OF_LOOPS, *(f"{model}_{name}" for model in MODELS for name in OF_MODELS)]
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as place:
         objects = []
         for model in MODELS:
+            header = model_header(load_model(model), module_guid(), model_digest(model))
+            files = {**shim_sources("fmi3"), **fmi_headers("fmi3"), **read_folder(WEB)}
+            files |= {"model.h": header, "kernel.c": kernel_c_source(model)}
+            files[HEADER] = (LOOPS / HEADER).read_bytes()
             flags = [*FLAGS, f"-DFMI3_FUNCTION_PREFIX={model}_"]
-            objects += compile_units(compiler, flags, Path(place) / model, model_files(model))
-        loops = {
-            k: v
-            for name in IN_PAGES
-            for k, v in files_with_translated_headers(LOOPS / name).items()
-        }
+            objects += compile_units(compiler, flags, Path(place) / model, files)
+        loops: Files = {}
+        for name in IN_PAGES:
+            loops |= files_with_translated_headers(LOOPS / name)
         objects += compile_units(compiler, FLAGS, Path(place) / "loops", loops)
         exported = [f"-Wl,--export={name}" for name in names]
         linked = [*compiler, *LINK_FLAGS, *exported, *objects, "-o", "kernel.wasm"]
         run_compiler(linked, place, "WebAssembly")
         require_unedited_sources()
-        return (Path(place) / "kernel.wasm").read_bytes() + custom_section(SECTION, module_guid())
+        text = bytes([len(SECTION)]) + (SECTION + module_guid()).encode()
+        assert len(text) < 128, "a length of one byte"
+        # 0: a custom section
+        return (Path(place) / "kernel.wasm").read_bytes() + bytes([0, len(text)]) + text
 
 
 def compile_units(
@@ -92,12 +86,6 @@ def compile_units(
         own = [*flags, *(CLANG_FLAGS if unit == "kernel.c" else ())]
         run_compiler([*compiler, *own, "-c", unit, "-o", f"{unit}.o"], str(folder), "WebAssembly")
     return [str(folder / f"{unit}.o") for unit in units]
-
-
-def custom_section(name: str, text: str) -> bytes:
-    content = bytes([len(name)]) + name.encode() + text.encode()
-    assert len(content) < 128, "a length of one byte"
-    return bytes([0, len(content)]) + content
 
 
 def guid_inside_module(module: bytes) -> str:

@@ -144,19 +144,16 @@ class Slave:
 
     # -- failing without a crash -------------------------------------------------------------------
 
-    def logging_on_and_unfiltered(self) -> tuple[bool, bool]:
-        """Return whether the importer has switched logging on, and whether for all categories."""
-        if not self._logger:
-            return False, False
-        logger = Logger.from_address(self._logger)
-        return bool(logger.on), logger.begin == logger.end
+    def logger(self) -> Logger | None:
+        return Logger.from_address(self._logger) if self._logger else None
 
     def write_to_stderr(self, text: str) -> None:
         """Write one line to the error output, where the importer may not hear what is logged.
 
         It may take a discarded step for success.
         """
-        if all(self.logging_on_and_unfiltered()):
+        logger = self.logger()
+        if logger and logger.on and logger.begin == logger.end:
             return
         try:
             sys.stderr.write(f"{self.model.name} '{self.instance_name}': {text}\n")
@@ -179,17 +176,13 @@ class Slave:
         while the exception is set, and from Python 3.13 on an importer's callback written in
         Python fails then.
         """
-        on, everything = self.logging_on_and_unfiltered()
-        if on and not everything:
-            logger = Logger.from_address(self._logger)
-            category = self.error_category()
-            if category in logger.categories():
-                logger.send(category, text)
+        logger, category = self.logger(), self.error_category()
+        if logger and logger.on and category in logger.categories():
+            logger.send(category, text)
 
     def error_category(self) -> str:
-        if not self._logger:
-            return ERRORS
-        wanted = Logger.from_address(self._logger).categories()
+        logger = self.logger()
+        wanted = logger.categories() if logger else []
         return ALL if ALL in wanted and ERRORS not in wanted else ERRORS
 
     def report_error(self, text: str) -> None:

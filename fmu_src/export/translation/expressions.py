@@ -159,9 +159,8 @@ class Expressions(ABC):
         thing, module, name = self.resolve(node)
         if isinstance(thing, bool) or not isinstance(thing, (int, float)):
             raise self.refusal(node, ast.unparse(node), "a number")
-        return Value(
-            self.kernel.constant_name(module, name), WHOLE if isinstance(thing, int) else REAL
-        )
+        kind = WHOLE if isinstance(thing, int) else REAL
+        return Value(self.kernel.constant_name(module, name), kind)
 
     def resolve(self, node: ast.expr) -> tuple[object, ModuleType, str]:
         name = ast.unparse(node)
@@ -240,10 +239,8 @@ class Expressions(ABC):
     def translate_boolean_operation(self, node: ast.BoolOp) -> Value:
         sign, rank = ("&&", AND) if isinstance(node.op, ast.And) else ("||", OR)
         first, *others = node.values
-        values = [
-            self.translate_test(first),
-            *self.translate_without_variables(others, self.translate_test),
-        ]
+        values = [self.translate_test(first)]
+        values += self.translate_without_variables(others, self.translate_test)
         # C's compilers ask for parentheses around && within ||
         return Value(f" {sign} ".join(value.text_within(BITS) for value in values), TRUTH, rank)
 
@@ -266,15 +263,12 @@ class Expressions(ABC):
 
     def translate_conditional_expression(self, node: ast.IfExp) -> Value:
         test = self.translate_test(node.test)
-        one, other = self.translate_without_variables(
-            [node.body, node.orelse], self.translate_expression
-        )
+        parts = [node.body, node.orelse]
+        one, other = self.translate_without_variables(parts, self.translate_expression)
         kind = common_type([one.type, other.type])
-        parts = (
-            one.converted_to(kind).text_within(OR),
-            other.converted_to(kind).text_within(CHOICE),
-        )
-        return Value(f"{test.text_within(OR)} ? {parts[0]} : {parts[1]}", kind, CHOICE)
+        yes, no = one.converted_to(kind), other.converted_to(kind)
+        text = f"{test.text_within(OR)} ? {yes.text_within(OR)} : {no.text_within(CHOICE)}"
+        return Value(text, kind, CHOICE)
 
     def translate_without_variables(
         self, nodes: Sequence[ast.expr], read: Callable[[ast.expr], Value]
@@ -287,9 +281,8 @@ class Expressions(ABC):
 
     def make_tuple(self, parts: Sequence[Value]) -> Value:
         kind = tuple(part.type for part in parts)
-        return Value(
-            f"({self.kernel.c_type_name(kind)}){{{', '.join(part.text for part in parts)}}}", kind
-        )
+        texts = ", ".join(part.text for part in parts)
+        return Value(f"({self.kernel.c_type_name(kind)}){{{texts}}}", kind)
 
     def translate_call(self, node: ast.Call) -> Value:
         name = ast.unparse(node.func)

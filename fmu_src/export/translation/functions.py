@@ -155,9 +155,8 @@ class Body(Expressions):
 
     def write_assignment(self, target: ast.expr, value: Value) -> None:
         if isinstance(target, ast.Subscript):
-            self.write_line(
-                f"{self.translate_subscript(target).text} = {value.converted_to(REAL).text};"
-            )
+            slot = self.translate_subscript(target).text
+            self.write_line(f"{slot} = {value.converted_to(REAL).text};")
             return
         if not isinstance(target, ast.Name):
             raise self.refusal(target, ast.unparse(target), "a name or a slot of the memory")
@@ -200,11 +199,8 @@ class Body(Expressions):
         self.write_line(f"return {value.converted_to(kind).text};")
 
     def translate_if(self, node: ast.If) -> None:
-        hint, test, before = (
-            self.hints.get(node.lineno, ""),
-            self.translate_test(node.test).text,
-            self.is_rare,
-        )
+        hint, before = self.hints.get(node.lineno, ""), self.is_rare
+        test = self.translate_test(node.test).text
         self.write_line(f"if ({HINTS[hint]}({test})) {{" if hint else f"if ({test}) {{")
         self.is_rare = before or hint == "rarely"
         self.translate_inner_block(node.body)
@@ -224,9 +220,7 @@ class Body(Expressions):
         values = [self.translate_expression(end) for end in ends]
         first, last = (Value("0", WHOLE), *values) if len(values) == 1 else values[:2]
         step = ast.literal_eval(ends[2]) if len(values) == 3 else 1
-        changed = {
-            one.id for one in subset.assigned_targets_in(node.body) if isinstance(one, ast.Name)
-        }
+        changed = {ast.unparse(one) for one in subset.assigned_targets_in(node.body)}
         if last.text in changed or not (is_simple_name(last) or last.text.isdigit()):
             last = self.keep_in_variable(last)  # Python asks for it once
         name = "round" if target.id == "_" else c_name(target.id)

@@ -116,9 +116,8 @@ class Translation:
         """Return a function for arguments of these types, translated at the first call."""
         key = function, kinds
         if key not in self.units:
-            unit = Unit(
-                function, kinds, self.unique_c_name(function.__name__, key, function.__module__)
-            )
+            name = self.unique_c_name(function.__name__, key, function.__module__)
+            unit = Unit(function, kinds, name)
             self.begun.add(function)
             Body(self, unit).translate()
             self.begun.remove(function)

@@ -100,11 +100,6 @@ def can_declare(statement: ast.stmt, name: str) -> bool:
     return any(isinstance(one, ast.Name) and one.id == name for one in targets_of(statement))
 
 
-def inner_blocks(statement: ast.stmt) -> list[Block]:
-    blocks = (getattr(statement, part, []) for part in ("body", "orelse"))
-    return [block for block in blocks if block]
-
-
 def owner_blocks(body: Block) -> dict[str, Block]:
     """Return the innermost block that holds all uses, of each variable that is assigned."""
     paths: dict[str, list[list[Block]]] = {}
@@ -112,14 +107,13 @@ def owner_blocks(body: Block) -> dict[str, Block]:
 
     def visit(block: Block, path: list[Block]) -> None:
         for statement in block:
-            inner = inner_blocks(statement)
             for child in ast.iter_child_nodes(statement):
                 if not isinstance(child, ast.stmt):
                     for name in names_in(child):
                         paths.setdefault(name, []).append([*path, block])
             assigned.update(t.id for t in targets_of(statement) if isinstance(t, ast.Name))
-            for part in inner:
-                visit(part, [*path, block])
+            for part in ("body", "orelse"):
+                visit(getattr(statement, part, []), [*path, block])
 
     visit(body, [])
     return {name: innermost_shared_block(paths[name]) for name in sorted(assigned - {"_"})}

@@ -61,7 +61,7 @@ static Status report_reason(Instance *instance, Status status, const char *call,
 }
 
 Status refuse(Instance *instance, const char *call, const char *reason) {
-    return report_reason(instance, FAILED, call, reason);
+    return instance ? report_reason(instance, FAILED, call, reason) : FAILED;
 }
 
 /* Refuse with a message in which %g stands for the next of the numbers, %v for that as the variable's value, %s for the next of the texts. */
@@ -82,6 +82,7 @@ static Status refuse_with_values(Instance *instance, const char *call, const cha
 
 bool require_phase(Instance *instance, const char *call, int phases) {
     static const char *const names[] = {"instantiated", "initialization mode", "step mode", "event mode", "stopped after an error", "terminated"};
+    if (!instance) return false;
     if (instance->state.phase & phases) return true;
     char text[TEXT] = "called when ";
     for (int i = 0; i < 6; i++) if (instance->state.phase == 1 << i) append(text, names[i]);
@@ -90,6 +91,12 @@ bool require_phase(Instance *instance, const char *call, int phases) {
     for (int i = 0; i < 6; i++) if (phases & 1 << i) { append(text, separator); append(text, names[i]); separator = ", "; }
     refuse(instance, call, text);
     return false;
+}
+
+Status change_phase(Instance *instance, const char *call, int from, Phase to) {
+    if (!require_phase(instance, call, from)) return FAILED;
+    instance->state.phase = to;
+    return OK;
 }
 
 bool refuse_missing_array(Instance *instance, const char *call, size_t count, const void *a, const void *b) {
@@ -211,12 +218,6 @@ Status set_experiment(Instance *instance, const char *call, double start_time, d
         return refuse_with_values(instance, call, "startTime = %g s with stopTime = %g s: expected stopTime >= startTime", NULL, NUMBERS(start_time, stop_time), NULL);
     instance->state.start_time = start_time;
     instance->stop_time = stop_time;
-    return OK;
-}
-
-Status enter_initialization(Instance *instance, const char *call) {
-    if (!require_phase(instance, call, INSTANTIATED)) return FAILED;
-    instance->state.phase = INITIALIZING;
     return OK;
 }
 

@@ -11,6 +11,12 @@
 
 #include "names.h"
 
+#if defined(__GNUC__)  /* FMI passes more than this FMU needs */
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#elif defined(_MSC_VER)
+#pragma warning(disable : 4100)
+#endif
+
 #if defined(__GNUC__) && !defined(_WIN32)
 /* names of this library only, whatever options compile it: the C library, too, has a function step */
 #pragma GCC visibility push(hidden)
@@ -62,9 +68,10 @@ Instance *instance_new(const char *call, const char *name, const char *token_nam
 void instance_free(Instance *);
 void instance_reset(Instance *);
 
-/* Fail with a message, which is no format. */
+/* Fail with a message, which is no format; without an instance, here and below, without one. */
 Status refuse(Instance *, const char *call, const char *reason);
 bool require_phase(Instance *, const char *call, int phases);
+Status change_phase(Instance *, const char *call, int from, Phase to);
 bool refuse_missing_array(Instance *, const char *call, size_t count, const void *a, const void *b);  /* an array that is not empty */
 
 /* Whether all categories are those of modelDescription.xml. */
@@ -72,7 +79,6 @@ Status require_known_categories(Instance *, const char *call, size_t count, cons
 
 /* `stop_time` is INFINITY where none is defined. */
 Status set_experiment(Instance *, const char *call, double start_time, double stop_time);
-Status enter_initialization(Instance *, const char *call);
 Status exit_initialization(Instance *, const char *call);
 Status step_to_point(Instance *, const char *call, double current, double size);
 

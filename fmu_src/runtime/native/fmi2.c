@@ -7,6 +7,10 @@
 #define SETTABLE (INSTANTIATED | INITIALIZING | STEPPING)
 #define READABLE (INITIALIZING | STEPPING | STOPPED | TERMINATED)
 
+/* A function that passes on to core.h, which gets its name as `call`. */
+#define PASS_ON(NAME, PARAMETERS, EXPRESSION) \
+    fmi2Status NAME PARAMETERS { static const char *const call = #NAME; return c ? (fmi2Status)(EXPRESSION) : fmi2Error; }
+
 const char *const TYPE_NAMES[] = {"Real", "Integer", "Boolean"};
 
 static void report(Instance *instance, Status status, const char *text) {
@@ -23,18 +27,11 @@ static void report(Instance *instance, Status status, const char *text) {
     callbacks->logger(instance->environment, instance->name, (fmi2Status)status, CATEGORY(status), format);
 }
 
-static fmi2Status refuse2(Instance *instance, const char *call, const char *text) {
-    return (fmi2Status)refuse(instance, call, text);
-}
-
 const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
 const char *fmi2GetVersion(void) { return fmi2Version; }
 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources, const fmi2CallbackFunctions *callbacks,
                               fmi2Boolean visible, fmi2Boolean logging) {
-    (void)resources;
-    (void)visible;
-    (void)logging;
     static const char *const call = "fmi2Instantiate";
     Instance *instance = instance_new(call, name, "GUID", guid, report, callbacks ? callbacks->componentEnvironment : NULL, (void *)callbacks);
     if (!instance || type == fmi2CoSimulation) return instance;
@@ -45,31 +42,14 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
 
 void fmi2FreeInstance(fmi2Component c) { instance_free(c); }
 
-fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[]) {
-    (void)on;
-    return c ? (fmi2Status)require_known_categories(c, "fmi2SetDebugLogging", count, categories) : fmi2Error;
-}
-
-fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real start, fmi2Boolean stop_defined, fmi2Real stop) {
-    (void)tolerance_defined;
-    (void)tolerance;
-    return c ? (fmi2Status)set_experiment(c, "fmi2SetupExperiment", start, stop_defined ? stop : INFINITY) : fmi2Error;
-}
-
-fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-    return c ? (fmi2Status)enter_initialization(c, "fmi2EnterInitializationMode") : fmi2Error;
-}
-
-fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-    return c ? (fmi2Status)exit_initialization(c, "fmi2ExitInitializationMode") : fmi2Error;
-}
-
-fmi2Status fmi2Terminate(fmi2Component c) {
-    Instance *instance = c;
-    if (!instance || !require_phase(instance, "fmi2Terminate", STEPPING | STOPPED)) return fmi2Error;
-    instance->state.phase = TERMINATED;
-    return fmi2OK;
-}
+PASS_ON(fmi2SetDebugLogging, (fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[]),
+        require_known_categories(c, call, count, categories))
+PASS_ON(fmi2SetupExperiment,
+        (fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real start, fmi2Boolean stop_defined, fmi2Real stop),
+        set_experiment(c, call, start, stop_defined ? stop : INFINITY))
+PASS_ON(fmi2EnterInitializationMode, (fmi2Component c), change_phase(c, call, INSTANTIATED, INITIALIZING))
+PASS_ON(fmi2ExitInitializationMode, (fmi2Component c), exit_initialization(c, call))
+PASS_ON(fmi2Terminate, (fmi2Component c), change_phase(c, call, STEPPING | STOPPED, TERMINATED))
 
 fmi2Status fmi2Reset(fmi2Component c) {
     if (!c) return fmi2Error;
@@ -77,60 +57,47 @@ fmi2Status fmi2Reset(fmi2Component c) {
     return fmi2OK;
 }
 
-#define GETTER(NAME, TYPE, KIND, EXPRESSION)                                                                                     \
-    fmi2Status NAME(fmi2Component c, const fmi2ValueReference refs[], size_t count, TYPE values[]) {                             \
-        Instance *instance = c;                                                                                                  \
-        if (!instance || !require_phase(instance, #NAME, READABLE) || refuse_missing_array(instance, #NAME, count, refs, values)) return fmi2Error; \
-        if (bring_up_to_date(instance) != OK) return fmi2Error;                                                                         \
-        for (size_t i = 0; i < count; i++) {                                                                                     \
-            if (!find_variable(instance, #NAME, refs[i], KIND)) return fmi2Error;                                                         \
-            double value = instance->state.memory[refs[i]];                                                                      \
-            values[i] = EXPRESSION;                                                                                              \
-        }                                                                                                                        \
-        return fmi2OK;                                                                                                           \
+#define GETTER(NAME, TYPE, KIND, EXPRESSION)                                                                                                                        \
+    fmi2Status NAME(fmi2Component c, const fmi2ValueReference refs[], size_t count, TYPE values[]) {                                                                \
+        Instance *instance = c;                                                                                                                                     \
+        if (!require_phase(instance, #NAME, READABLE) || refuse_missing_array(instance, #NAME, count, refs, values)) return fmi2Error;                              \
+        if (bring_up_to_date(instance) != OK) return fmi2Error;                                                                                                     \
+        for (size_t i = 0; i < count; i++) {                                                                                                                        \
+            if (!find_variable(instance, #NAME, refs[i], KIND)) return fmi2Error;                                                                                   \
+            double value = instance->state.memory[refs[i]];                                                                                                         \
+            values[i] = EXPRESSION;                                                                                                                                 \
+        }                                                                                                                                                           \
+        return fmi2OK;                                                                                                                                              \
     }
 
 GETTER(fmi2GetReal, fmi2Real, REAL, value)
 GETTER(fmi2GetInteger, fmi2Integer, INTEGER, (fmi2Integer)value)
 GETTER(fmi2GetBoolean, fmi2Boolean, BOOLEAN, value != 0 ? fmi2True : fmi2False)
 
-#define SETTER(NAME, TYPE, KIND, EXPRESSION)                                                                                     \
-    fmi2Status NAME(fmi2Component c, const fmi2ValueReference refs[], size_t count, const TYPE values[]) {                       \
-        Instance *instance = c;                                                                                                  \
-        if (!instance || !require_phase(instance, #NAME, SETTABLE) || refuse_missing_array(instance, #NAME, count, refs, values)) return fmi2Error; \
-        for (size_t i = 0; i < count; i++) {  /* all or none */                                                                  \
-            const Variable *variable = find_variable(instance, #NAME, refs[i], KIND);                                                     \
-            if (!variable || require_settable(instance, #NAME, variable, EXPRESSION) != OK) return fmi2Error;                             \
-        }                                                                                                                        \
-        for (size_t i = 0; i < count; i++) set_value(instance, refs[i], EXPRESSION);                                                   \
-        return fmi2OK;                                                                                                           \
+#define SETTER(NAME, TYPE, KIND, EXPRESSION)                                                                                                                        \
+    fmi2Status NAME(fmi2Component c, const fmi2ValueReference refs[], size_t count, const TYPE values[]) {                                                          \
+        Instance *instance = c;                                                                                                                                     \
+        if (!require_phase(instance, #NAME, SETTABLE) || refuse_missing_array(instance, #NAME, count, refs, values)) return fmi2Error;                              \
+        for (size_t i = 0; i < count; i++) {  /* all or none */                                                                                                     \
+            const Variable *variable = find_variable(instance, #NAME, refs[i], KIND);                                                                               \
+            if (!variable || require_settable(instance, #NAME, variable, EXPRESSION) != OK) return fmi2Error;                                                       \
+        }                                                                                                                                                           \
+        for (size_t i = 0; i < count; i++) set_value(instance, refs[i], EXPRESSION);                                                                                \
+        return fmi2OK;                                                                                                                                              \
     }
 
 SETTER(fmi2SetReal, fmi2Real, REAL, (double)values[i])
 SETTER(fmi2SetInteger, fmi2Integer, INTEGER, (double)values[i])
 SETTER(fmi2SetBoolean, fmi2Boolean, BOOLEAN, (values[i] != fmi2False ? 1.0 : 0.0))
 
-fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference refs[], size_t count, fmi2String values[]) {
-    (void)refs;
-    (void)values;
-    if (!c) return fmi2Error;
-    return count == 0 ? fmi2OK : refuse2(c, "fmi2GetString", "there are no String variables");
-}
+PASS_ON(fmi2GetString, (fmi2Component c, const fmi2ValueReference refs[], size_t count, fmi2String values[]), count ? refuse(c, call, "there are no String variables") : OK)
+PASS_ON(fmi2SetString, (fmi2Component c, const fmi2ValueReference refs[], size_t count, const fmi2String values[]), count ? refuse(c, call, "there are no String variables") : OK)
 
-fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference refs[], size_t count, const fmi2String values[]) {
-    (void)refs;
-    (void)values;
-    if (!c) return fmi2Error;
-    return count == 0 ? fmi2OK : refuse2(c, "fmi2SetString", "there are no String variables");
-}
-
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *to) {
-    return c ? (fmi2Status)save_state(c, "fmi2GetFMUstate", to) : fmi2Error;
-}
-
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate from) {
-    return c ? (fmi2Status)restore_state(c, "fmi2SetFMUstate", from) : fmi2Error;
-}
+PASS_ON(fmi2GetFMUstate, (fmi2Component c, fmi2FMUstate *to), save_state(c, call, to))
+PASS_ON(fmi2SetFMUstate, (fmi2Component c, fmi2FMUstate from), restore_state(c, call, from))
+PASS_ON(fmi2SerializedFMUstateSize, (fmi2Component c, fmi2FMUstate state, size_t *size), state_size(c, call, state, size))
+PASS_ON(fmi2SerializeFMUstate, (fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size), serialize_state(c, call, state, bytes, size))
+PASS_ON(fmi2DeSerializeFMUstate, (fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *to), deserialize_state(c, call, bytes, size, to))
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
     if (!c) return fmi2Error;
@@ -138,29 +105,17 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
     return fmi2OK;
 }
 
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
-    return c ? (fmi2Status)state_size(c, "fmi2SerializedFMUstateSize", state, size) : fmi2Error;
-}
-
-fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-    return c ? (fmi2Status)serialize_state(c, "fmi2SerializeFMUstate", state, bytes, size) : fmi2Error;
-}
-
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *to) {
-    return c ? (fmi2Status)deserialize_state(c, "fmi2DeSerializeFMUstate", bytes, size, to) : fmi2Error;
-}
-
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference refs[], size_t count, const fmi2Integer orders[], const fmi2Real values[]) {
     static const char *const call = "fmi2SetRealInputDerivatives";
     Instance *instance = c;
-    if (!instance || !require_phase(instance, call, SETTABLE) || refuse_missing_array(instance, call, count, refs, values) || refuse_missing_array(instance, call, count, orders, values))
+    if (!require_phase(instance, call, SETTABLE) || refuse_missing_array(instance, call, count, refs, values) || refuse_missing_array(instance, call, count, orders, values))
         return fmi2Error;
     for (int write = 0; write < 2; write++)
         for (size_t i = 0; i < count; i++) {
             const Variable *input = find_variable(instance, call, refs[i], REAL);
             if (!input) return fmi2Error;
             if (!input->input_derivatives || orders[i] < 1 || orders[i] > input->input_derivatives)
-                return refuse2(instance, call, "expected " INPUT_DERIVATIVES);
+                return (fmi2Status)refuse(instance, call, "expected " INPUT_DERIVATIVES);
             const Variable *derivative = input + orders[i];  /* the derivatives of an input follow it in the table */
             if (write) set_value(instance, refs[i] + (unsigned)orders[i], values[i]);
             else if (require_settable(instance, call, derivative, values[i]) != OK) return fmi2Error;
@@ -171,68 +126,55 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference refs[], size_t count, const fmi2Integer orders[], fmi2Real values[]) {
     static const char *const call = "fmi2GetRealOutputDerivatives";
     Instance *instance = c;
-    if (!instance || !require_phase(instance, call, READABLE) || refuse_missing_array(instance, call, count, refs, values) || refuse_missing_array(instance, call, count, orders, values))
+    if (!require_phase(instance, call, READABLE) || refuse_missing_array(instance, call, count, refs, values) || refuse_missing_array(instance, call, count, orders, values))
         return fmi2Error;
     if (bring_up_to_date(instance) != OK) return fmi2Error;
     for (size_t i = 0; i < count; i++) {
         const Variable *output = find_variable(instance, call, refs[i], REAL);
-        if (!output) return fmi2Error;
-        if (!require_rate(instance, call, output, orders[i])) return fmi2Error;
+        if (!output || !require_rate(instance, call, output, orders[i])) return fmi2Error;
     }
     double memory[MEMORY_SIZE];
     copy_with_rates(instance, memory);
     for (size_t i = 0; i < count; i++) {
         values[i] = memory[VARIABLES[refs[i]].rate];
-        if (!isfinite(values[i])) return refuse2(instance, call, "a rate of change leaves the range of floating-point numbers");
+        if (!isfinite(values[i])) return (fmi2Status)refuse(instance, call, "a rate of change leaves the range of floating-point numbers");
     }
     return fmi2OK;
 }
 
-fmi2Status fmi2DoStep(fmi2Component c, fmi2Real current, fmi2Real size, fmi2Boolean no_set_state_prior) {
-    (void)no_set_state_prior;
-    return c ? (fmi2Status)step_to_point(c, "fmi2DoStep", current, size) : fmi2Error;
-}
+PASS_ON(fmi2DoStep, (fmi2Component c, fmi2Real current, fmi2Real size, fmi2Boolean no_set_state_prior), step_to_point(c, call, current, size))
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value) {
     Instance *instance = c;
-    if (!instance) return fmi2Error;
-    if (kind != fmi2LastSuccessfulTime || !value) return refuse2(instance, "fmi2GetRealStatus", "expected fmi2LastSuccessfulTime");
+    if (!c || kind != fmi2LastSuccessfulTime || !value) return (fmi2Status)refuse(c, "fmi2GetRealStatus", "expected fmi2LastSuccessfulTime");
     *value = instance->state.memory[TIME_SLOT];
     return fmi2OK;
 }
 
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value) {
-    if (!c) return fmi2Error;
-    if (kind != fmi2Terminated || !value) return refuse2(c, "fmi2GetBooleanStatus", "expected fmi2Terminated");
+    if (!c || kind != fmi2Terminated || !value) return (fmi2Status)refuse(c, "fmi2GetBooleanStatus", "expected fmi2Terminated");
     *value = fmi2False;
     return fmi2OK;
 }
 
 /* Functions that have nothing to do here: some importers look for all that the header has. */
-static fmi2Status absent(fmi2Component c, const char *call, const char *text) {
-    return c ? refuse2(c, call, text) : fmi2Error;
-}
-#if defined(__GNUC__)
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#elif defined(_MSC_VER)
-#pragma warning(disable : 4100)
-#endif
-#define ABSENT(TEXT, NAME, ...) \
-    fmi2Status NAME(fmi2Component c, __VA_ARGS__) { return absent(c, #NAME, TEXT); }
 #define NOT_HERE "this is co-simulation"
-ABSENT(NOT_HERE, fmi2NewDiscreteStates, fmi2EventInfo *info)
-ABSENT(NOT_HERE, fmi2CompletedIntegratorStep, fmi2Boolean no_set_state_prior, fmi2Boolean *enter_event_mode, fmi2Boolean *terminate)
-ABSENT(NOT_HERE, fmi2SetTime, fmi2Real time)
-ABSENT(NOT_HERE, fmi2SetContinuousStates, const fmi2Real states[], size_t count)
-ABSENT(NOT_HERE, fmi2GetDerivatives, fmi2Real derivatives[], size_t count)
-ABSENT(NOT_HERE, fmi2GetEventIndicators, fmi2Real indicators[], size_t count)
-ABSENT(NOT_HERE, fmi2GetContinuousStates, fmi2Real states[], size_t count)
-ABSENT(NOT_HERE, fmi2GetNominalsOfContinuousStates, fmi2Real nominals[], size_t count)
-ABSENT("steps are never pending", fmi2GetStatus, const fmi2StatusKind kind, fmi2Status *value)
-ABSENT("steps are never pending", fmi2GetStringStatus, const fmi2StatusKind kind, fmi2String *value)
-ABSENT("there is no such status", fmi2GetIntegerStatus, const fmi2StatusKind kind, fmi2Integer *value)
-ABSENT("not provided, as modelDescription.xml says", fmi2GetDirectionalDerivative, const fmi2ValueReference unknowns[], size_t unknown_count,
-       const fmi2ValueReference knowns[], size_t known_count, const fmi2Real seed[], fmi2Real sensitivity[])
-fmi2Status fmi2EnterEventMode(fmi2Component c) { return absent(c, "fmi2EnterEventMode", NOT_HERE); }
-fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) { return absent(c, "fmi2EnterContinuousTimeMode", NOT_HERE); }
-fmi2Status fmi2CancelStep(fmi2Component c) { return absent(c, "fmi2CancelStep", "steps are never pending"); }
+#define NEVER_PENDING "steps are never pending"
+PASS_ON(fmi2EnterEventMode, (fmi2Component c), refuse(c, call, NOT_HERE))
+PASS_ON(fmi2NewDiscreteStates, (fmi2Component c, fmi2EventInfo *info), refuse(c, call, NOT_HERE))
+PASS_ON(fmi2EnterContinuousTimeMode, (fmi2Component c), refuse(c, call, NOT_HERE))
+PASS_ON(fmi2CompletedIntegratorStep, (fmi2Component c, fmi2Boolean no_set_state_prior, fmi2Boolean *enter_event_mode, fmi2Boolean *terminate),
+        refuse(c, call, NOT_HERE))
+PASS_ON(fmi2SetTime, (fmi2Component c, fmi2Real time), refuse(c, call, NOT_HERE))
+PASS_ON(fmi2SetContinuousStates, (fmi2Component c, const fmi2Real states[], size_t count), refuse(c, call, NOT_HERE))
+PASS_ON(fmi2GetDerivatives, (fmi2Component c, fmi2Real derivatives[], size_t count), refuse(c, call, NOT_HERE))
+PASS_ON(fmi2GetEventIndicators, (fmi2Component c, fmi2Real indicators[], size_t count), refuse(c, call, NOT_HERE))
+PASS_ON(fmi2GetContinuousStates, (fmi2Component c, fmi2Real states[], size_t count), refuse(c, call, NOT_HERE))
+PASS_ON(fmi2GetNominalsOfContinuousStates, (fmi2Component c, fmi2Real nominals[], size_t count), refuse(c, call, NOT_HERE))
+PASS_ON(fmi2CancelStep, (fmi2Component c), refuse(c, call, NEVER_PENDING))
+PASS_ON(fmi2GetStatus, (fmi2Component c, const fmi2StatusKind kind, fmi2Status *value), refuse(c, call, NEVER_PENDING))
+PASS_ON(fmi2GetStringStatus, (fmi2Component c, const fmi2StatusKind kind, fmi2String *value), refuse(c, call, NEVER_PENDING))
+PASS_ON(fmi2GetIntegerStatus, (fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value), refuse(c, call, "there is no such status"))
+PASS_ON(fmi2GetDirectionalDerivative,
+        (fmi2Component c, const fmi2ValueReference unknowns[], size_t unknown_count, const fmi2ValueReference knowns[], size_t known_count,
+         const fmi2Real seed[], fmi2Real sensitivity[]), refuse(c, call, "not provided, as modelDescription.xml says"))

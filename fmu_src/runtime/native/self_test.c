@@ -3,17 +3,7 @@
 
 #include "core.h"
 
-/* The bits of all variables as one number; each of them counts, and its place. */
-static unsigned long long fingerprint(unsigned long long sum, const double *memory) {
-    for (unsigned i = 0; i < VARIABLE_COUNT; i++) {
-        unsigned long long bits;
-        memcpy(&bits, &memory[i], sizeof bits);
-        sum = ((sum << 7) | (sum >> 57)) ^ bits;
-    }
-    return sum;
-}
-
-/* A short run from the start values; for its second half all real inputs are moved. */
+/* A short run from the start values; for its second half all real inputs are moved. The bits of all variables are one number: each counts, and its place. */
 bool has_right_bits(double *memory) {
     unsigned long long sum = 0;
     if (kernel_initialize(memory, 0.0)) return false;
@@ -24,7 +14,11 @@ bool has_right_bits(double *memory) {
             if (variable->set_flag) memory[variable->set_flag] = 1.0;
         }
         if (kernel_advance(memory, step * SELF_TEST_STEP)) return false;
-        sum = fingerprint(sum, memory);
+        for (unsigned i = 0; i < VARIABLE_COUNT; i++) {
+            unsigned long long bits;
+            memcpy(&bits, &memory[i], sizeof bits);
+            sum = ((sum << 7) | (sum >> 57)) ^ bits;
+        }
     }
     return sum == SELF_TEST_SUM;
 }

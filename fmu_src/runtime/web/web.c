@@ -12,7 +12,6 @@ EXPORT char message[TEXT];
 EXPORT const void *const OWN(state_functions)[] = {(void *)fmi3GetFMUState, (void *)fmi3SetFMUState, (void *)fmi3FreeFMUState};
 
 static void report(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String text) {
-    (void)environment, (void)status, (void)category;
     message[0] = 0;
     strncat(message, text, TEXT - 1);
 }
