@@ -13,7 +13,7 @@ from orchestrate.running import runner
 
 from . import held_files
 from .exports import BUILD, refresh, unexpected
-from .fmu.programs.driver import Fmu2
+from .fmu.programs.driver import Fmu2, free_all
 
 alike = {"deadline": None, "derandomize": True, "database": None}
 everywhere = settings(**alike, suppress_health_check=list(HealthCheck))
@@ -69,6 +69,13 @@ def exported(request, tmp_path_factory):
         pytest.fail(request.session.shouldfail, pytrace=False)
     Fmu2.home = tmp_path_factory.mktemp("extracted")
     return BUILD
+
+
+@pytest.fixture(autouse=True)
+def instances():
+    """No instance of an FMU outlives its test."""
+    yield
+    free_all()
 
 
 @pytest.fixture(scope="session")

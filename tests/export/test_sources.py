@@ -1,7 +1,6 @@
 """The files an FMU is made of are those that its modules import; nothing else decides its GUID."""
 
 import ast
-import json
 import os
 import subprocess
 import sys
@@ -15,45 +14,43 @@ from fmu_src.export.errors import CannotExport
 from ..fresh import ROOT
 
 IMPORTING = """
-import importlib, json, sys
+import importlib, sys
 for name in sys.argv[1:]:
     importlib.import_module(name)
-ours = [module for name, module in sys.modules.items() if name.split(".")[0] == "fmu_src"]
-print(json.dumps([module.__file__ for module in ours]))
+    print(*(m.__file__ for name, m in sys.modules.items() if name.split(".")[0] == "fmu_src"))
 """
 
 
-def imported_by(*modules):
-    """Files below ``fmu_src`` that a fresh process runs where it imports modules."""
+@pytest.mark.parametrize("folder", forms.MODELS.values())
+def test_a_model_and_the_embedded_package_are_made_of_what_they_import(folder):
+    """By what a fresh process runs that imports the model, and then the slave."""
+    modules = f"fmu_src.models.{folder}.model", "fmu_src.runtime.slave"
     command = [sys.executable, "-c", IMPORTING, *modules]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    places = map(Path, json.loads(done.stdout))
-    return sorted(path.relative_to(ROOT / "fmu_src").as_posix() for path in places)
+    model, package = (
+        {Path(file).relative_to(sources.ROOT).as_posix() for file in line.split()}
+        for line in done.stdout.splitlines()
+    )
+    assert sources.model_sources(folder).keys() == model
+    assert pythonfmu_form.embedded_sources(folder).keys() == package
+    kernels = {name.split("/")[1] for name in model if name.startswith("kernels/")}
+    assert kernels == {"__init__.py", "numerics", folder}
 
 
-@pytest.mark.parametrize("folder", forms.MODELS.values())
-def test_a_model_is_made_of_what_it_imports(folder):
-    ran = imported_by(f"fmu_src.models.{folder}.model")
-    assert sorted(sources.model_sources(folder)) == ran
-    kernels = {
-        name.split("/")[1] for name in ran if name.startswith("kernels/") and "/" in name[8:]
-    }
-    assert kernels == {"numerics", folder}
-
-
-@pytest.mark.parametrize("folder", forms.MODELS.values())
-def test_the_embedded_package_is_made_of_what_it_imports(folder):
-    ran = imported_by(f"fmu_src.models.{folder}.model", "fmu_src.runtime.slave")
-    assert sorted(pythonfmu_form.embedded_sources(folder)) == ran
+def statements(node):
+    """A tree's statements, and those inside them: what is smaller has none."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, (ast.stmt, ast.excepthandler, ast.match_case)):
+            yield child
+            yield from statements(child)
 
 
 def test_no_import_of_ours_is_overlooked():
     """A file's imports are read without the tree of the rest of it."""
     for path in [*(ROOT / "fmu_src").rglob("*.py"), *(ROOT / "orchestrate").rglob("*.py")]:
-        source = path.read_bytes()
-        imports = (ast.Import, ast.ImportFrom)
-        nodes = {ast.unparse(n) for n in ast.walk(ast.parse(source)) if isinstance(n, imports)}
+        source, imports = path.read_bytes(), (ast.Import, ast.ImportFrom)
+        nodes = {ast.unparse(n) for n in statements(ast.parse(source)) if isinstance(n, imports)}
         assert nodes <= {*map(ast.unparse, sources.import_statements(source))}, path
 
 

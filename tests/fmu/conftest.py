@@ -5,34 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from ..exports import once
-from .copies import export_copy
-from .driver import FMUS
-from .programs.driver import free_all
+from .driver import FMUS, FORMS
 
-FORMS = list(FMUS)
 NUMBERS = ("chattering", "energy", "forces", "guarantees", "importers", "motion", "outputs")
 
 
 @pytest.fixture(scope="session", autouse=True)
 def forms(exported):
     return exported
-
-
-@pytest.fixture(scope="session")
-def changed(tmp_path_factory):
-    """An FMU of sources whose coefficient of restitution starts as another one."""
-    change = ("models/oscillator/variables.py", '"e", "1", 0.7', '"e", "1", 0.25')
-    surroundings = {"PYTHONHASHSEED": "1", "TZ": "Asia/Tokyo", "LC_ALL": "C"}
-    folder = tmp_path_factory.mktemp("changed")
-    return once(tmp_path_factory, "changed", lambda: export_copy(folder, [change], **surroundings))
-
-
-@pytest.fixture(autouse=True)
-def instances():
-    """No instance outlives its test."""
-    yield
-    free_all()
 
 
 @pytest.fixture(params=FORMS, scope="session")

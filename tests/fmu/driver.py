@@ -10,9 +10,11 @@ from ..fresh import run_fresh
 
 PROGRAMS = Path(__file__).with_name("programs")
 FORMS = ("fmi2-python", "fmi2", "fmi3")
+VERSIONS = FORMS[1:]  # of FMI; the native forms are called so
 OSCILLATOR = "TwoMassImpactOscillator"
 DRIVES = ("MotorShaker", "ElectrodynamicShaker")
 MODELS = (OSCILLATOR, *DRIVES)
+PAIRS = [(version, model) for version in VERSIONS for model in MODELS]
 FMUS = {form: BUILD / form / f"{OSCILLATOR}.fmu" for form in FORMS}
 
 
@@ -22,9 +24,4 @@ def path_of(model, form):
 
 def run(program, fmu, *arguments, **options):
     """What a program returns for an FMU; options are those of :func:`..fresh.run_fresh`."""
-    return run_with_output(program, fmu, *arguments, **options)[0]
-
-
-def run_with_output(program, fmu, *arguments, **options):
-    """As :func:`run`; returns the completed process too."""
-    return run_fresh(PROGRAMS, program, fmu, *arguments, **options)
+    return run_fresh(PROGRAMS, program, fmu, *arguments, **options)[0]

@@ -3,6 +3,7 @@ instance, not another one.
 """
 
 import math
+from functools import partial
 
 import pytest
 
@@ -14,23 +15,12 @@ nan, inf = math.nan, math.inf
 forms = pytest.mark.parametrize("form", ["fmi2-python", "fmi2"])
 
 
-def new(f):
-    pass
-
-
-def begun(f):
-    f.enter()
-
-
-def running(f):
-    f.start().step(2.0)
-
-
-def ended(f):
-    f.start().step(2.0).call("terminate")
-
-
-PHASES = {phase.__name__: phase for phase in (new, begun, running, ended)}
+PHASES = {  # how an instance comes there
+    "new": lambda f: None,
+    "begun": lambda f: f.enter(),
+    "running": lambda f: f.start().step(2.0),
+    "ended": lambda f: f.start().step(2.0).call("terminate"),
+}
 OVERLAP = "x2_start = 0.0 m; x2_start >= x1_start = 1.0 m"
 STEP_SIZE = "expected every finite number >= 0"
 ONCE = "python: expected one call"
@@ -92,25 +82,21 @@ def of_another_version(f):
     return data[:30] + b"0000" + data[34:]
 
 
-def cases():
-    """Names of all mistakes, with phase, the call that must fail, and parts of its message."""
-    for phase, values, parts in SET:
-        name = f"{phase}: {values}"
-        yield name, (phase, lambda f, v=values: f.set(**v), parts)
-    for phase, function, given, parts in CALL:
-
-        def call(f, function=function, given=given):
-            if function[1:3] == "et" and function != "setupExperiment":
-                names, *values = given
-                given = [f.reference(x) if x in f.variables else x for x in names], *values
-            f.call(function, *given)
-
-        yield f"{phase}: {function}{given}", (phase, call, parts)
-    for name, (function, parts) in OTHER.items():
-        yield name, ("new", function, parts)
+def call(f, function, given):
+    if function[1:3] == "et" and function != "setupExperiment":
+        names, *values = given
+        given = [f.reference(x) if x in f.variables else x for x in names], *values
+    f.call(function, *given)
 
 
-CASES = dict(cases())
+CASES = {  # by name: phase, the call that must fail, and parts of its message
+    **{f"{phase}: {v}": (phase, lambda f, v=v: f.set(**v), parts) for phase, v, parts in SET},
+    **{
+        f"{phase}: {function}{given}": (phase, partial(call, function=function, given=given), parts)
+        for phase, function, given, parts in CALL
+    },
+    **{name: ("new", *case) for name, case in OTHER.items()},
+}
 
 
 def refusal(f, fail):

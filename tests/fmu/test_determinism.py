@@ -32,7 +32,7 @@ def test_two_processes(fmu, tmp_path):
     data, expected = f.save()[0].hex(), f.step(2000.0).outputs()
     assert expected["impact_count"] > 300
     other = {"PYTHONHASHSEED": "7", "LC_ALL": "C"}
-    found = run("determinism.run_and_resume", fmu, data, cwd=tmp_path, env=other)
+    found = run("runs.run_and_resume", fmu, data, cwd=tmp_path, env=other)
     assert found[0][0]["impact_count"] < found[1]["impact_count"] == expected["impact_count"]
     assert found[1] == expected and found[0][1] == expected["x1"]
 

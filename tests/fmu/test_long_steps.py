@@ -37,7 +37,7 @@ STEPS = [  # model, start time, what is set, length of the step, and what the me
 def test_a_step_of_any_length_ends(exported, tmp_path, form, model):
     steps = [step[1:] for step in STEPS if step[0] == model]
     asked, where = [step[:-1] for step in steps], {"cwd": tmp_path, "timeout": 60}
-    messages = run("long_steps.outcomes", path_of(model, form), asked, **where)
+    messages = run("runs.refusals", path_of(model, form), asked, **where)
     for message, (*_, words) in zip(messages, steps, strict=True):
         assert all(part in message for part in words.split("; ")), message
         assert bool(message) == bool(words)

@@ -2,19 +2,42 @@
 
 import math
 import re
+from pathlib import Path
 
 import pytest
 
-from .driver import FMUS, run
+from fmu_src.export import forms, pythonfmu_form, sources
+from fmu_src.export.errors import CannotExport
+
+from .driver import FMUS, OSCILLATOR, run
 from .programs.driver import Refused, describe, harmonic, messages, open_fmu
 
 PYTHON = FMUS["fmi2-python"]
 
 
-def test_two_versions_in_one_process_do_not_share_code(changed):
+def export_other_version(folder):
+    """The uncompiled FMU of sources whose coefficient of restitution starts as another one."""
+    read, place = Path.read_bytes, sources.ROOT / "models" / "oscillator" / "variables.py"
+
+    def altered(path):
+        text = read(path)
+        return text.replace(b'"e", "1", 0.7', b'"e", "1", 0.25') if path == place else text
+
+    def no_compiler(*_):
+        raise CannotExport("not wanted here")
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Path, "read_bytes", altered)
+        patch.setattr(sources, "AT_IMPORT", sources.read_folder(sources.ROOT))
+        patch.setattr(pythonfmu_form, "link_for_platforms", no_compiler)
+        return forms.export(OSCILLATOR, forms.PYTHON_FORM, folder)
+
+
+def test_two_versions_in_one_process_do_not_share_code(tmp_path):
     """Same model, script and class names: each has its own defaults and numbers, in whatever order
     they come, and its own states.
     """
+    changed = export_other_version(tmp_path)
 
     def numbers(path):
         f = open_fmu(path).start()
@@ -33,7 +56,7 @@ def test_host_with_modules_of_the_same_names(tmp_path):
     """An importer that is itself written in Python, and has modules named as ours are, keeps them;
     the FMU does not get them.
     """
-    outputs, replaced, new = run("traps.host_with_modules_of_the_same_names", PYTHON, cwd=tmp_path)
+    outputs, replaced, new = run("runs.host_with_modules_of_the_same_names", PYTHON, cwd=tmp_path)
     assert outputs == open_fmu(PYTHON).start(**harmonic(1.13)).step(200.0).outputs()
     assert replaced == []
     assert new

@@ -14,9 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from fmu_src.export import forms, native_form, sources
-from fmu_src.export.compiler import compile_kernel, compile_object
+from fmu_src.export.compiler import compile_object
 from fmu_src.export.model_header import model_header
-from fmu_src.export.platforms import platform_of_this_machine
 from fmu_src.export.source_code import kernel_c_source
 from orchestrate.fmu import describe
 
@@ -30,20 +29,20 @@ SANITIZE = (
 WARNINGS = ("-std=gnu11", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function")
 
 
-def own_compiler_command() -> list[str] | None:
-    """Return the command of the machine's C compiler; None without one."""
+def own_compiler_command() -> list[str]:
+    """Return the command of the machine's C compiler; an empty list without one."""
     own = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-    return [own] if own else None
+    return [own] if own else []
 
 
-def zig_compiler(target: str = "native") -> list[str] | None:
-    """Return the command of ziglang's C compiler for a target; None if not installed."""
+def zig_compiler(target: str = "native") -> list[str]:
+    """Return the command of ziglang's C compiler for a target; an empty list if not installed."""
     command = [sys.executable, "-m", "ziglang", "cc", "-target", target]
-    return command if importlib.util.find_spec("ziglang") else None
+    return command if importlib.util.find_spec("ziglang") else []
 
 
-def c_compiler() -> list[str] | None:
-    """Return the command of any C compiler for this machine; None without one."""
+def c_compiler() -> list[str]:
+    """Return the command of any C compiler for this machine; an empty list without one."""
     return own_compiler_command() or zig_compiler()
 
 
@@ -61,26 +60,27 @@ def unpack_binary(fmu: Path, version: str, folder: Path, windows: bool = False) 
 
 
 def names_header(fmu: Path) -> str:
+    """Return ``names.h``: the FMU's scalar variables, its token and FMI version."""
     description = describe(fmu)
     rows, time = [], 0xFFFFFFFF
     for variable in description.variables.values():
         if variable.causality == "independent":
             time = variable.valueReference
-        if variable.type not in TYPES or variable.dimensions or variable.causality == "independent":
-            continue
-        settable = variable.causality in ("parameter", "input")
-        limits = [c_literal(variable.min, -math.inf), c_literal(variable.max, math.inf)]
-        cells = [f'"{variable.name}"', f"{variable.valueReference}u", f"'{TYPES[variable.type]}'"]
-        cells += [str(int(settable)), str(int(variable.variability == "fixed")), *limits]
-        rows.append("    {" + ", ".join(cells) + "},")
+        elif variable.type in TYPES and not variable.dimensions:
+            flags = variable.causality in ("parameter", "input"), variable.variability == "fixed"
+            limits = c_literal(variable.min or "-inf"), c_literal(variable.max or "inf")
+            kind = f"'{TYPES[variable.type]}'"
+            cells = [f'"{variable.name}"', f"{variable.valueReference}u", kind]
+            cells += [*(str(int(flag)) for flag in flags), *limits]
+            rows.append("    {" + ", ".join(cells) + "},")
     version = f"#define FMI_VERSION {description.fmi_version[0]}"
     defines = ["#include <math.h>", f'#define TOKEN "{description.guid}"']
     defines += [f"#define TIME_REFERENCE {time}u", version, f"#define MODEL_{description.name}"]
     return "\n".join([*defines, "static const Name NAMES[] = {", *rows, "};", ""])
 
 
-def c_literal(text: str | None, otherwise: float) -> str:
-    value = otherwise if text is None else float(text)
+def c_literal(text: str) -> str:
+    value = float(text)
     return repr(value).replace("inf", "INFINITY") if math.isinf(value) else value.hex()
 
 
@@ -89,19 +89,18 @@ def compile_against(
     folder: Path,
     programs: Iterable[Path],
     options: Sequence[str],
-    command: Sequence[str] | None = None,
+    command: Sequence[str] = (),
 ) -> Path:
     """Compile C files that include ``version.h`` against an FMU; return the program's path."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "names.h").write_text(names_header(fmu), encoding="utf-8")
-    number = describe(fmu).fmi_version[0]
-    for name, content in native_form.fmi_headers(f"fmi{number}").items():
+    version = f"fmi{describe(fmu).fmi_version[0]}"
+    for name, content in native_form.fmi_headers(version).items():
         (folder / name).write_bytes(content)
-    target = folder / f"importer{number}.exe"
-    windows = any("windows" in word for word in command or ())
+    target = folder / f"{version}.exe"
+    windows = any("windows" in word for word in command)
     libraries = [] if windows else ["-ldl", "-lpthread", "-lm"]
-    places = [f"-I{folder}", f"-I{HERE}"]
-    command = [*(command or c_compiler() or ["cc"]), *WARNINGS, *options, *places]
+    command = [*(command or c_compiler()), *WARNINGS, *options, f"-I{folder}", f"-I{HERE}"]
     files = [HERE / "importer.c", *programs]
     run_compiler([*command, "-o", target, *files, *libraries], folder)
     return target
@@ -111,32 +110,12 @@ def compile_importer(
     version: str,
     fmu: Path,
     folder: Path,
-    command: Sequence[str] | None = None,
+    command: Sequence[str] = (),
     options: Sequence[str] = ("-O1", "-g"),
 ) -> Path:
     """Compile the importer of an FMI version for an FMU; return the program's path."""
-    number = version[-1]
-    parts = ("modes", "fuzz", f"fuzz{number}")
+    parts = ("modes", "fuzz", f"fuzz{version[-1]}")
     return compile_against(fmu, folder, [HERE / f"{part}.c" for part in parts], options, command)
-
-
-def rebuild_shim(
-    version: str, folder: Path, objects: Mapping[str, bytes], options: Sequence[str], model: str
-) -> Path:
-    """Compile an FMU's binary from its own sources with other options; return its path."""
-    folder.mkdir(parents=True, exist_ok=True)
-    token = native_form.native_fmu_guid(model, version)
-    header = model_header(sources.load_model(model), token, sources.model_digest(model))
-    files = {**native_form.shim_sources(version), **native_form.fmi_headers(version)}
-    files |= {"model.h": header, "kernel.o": objects["x86_64-linux"]}
-    for name, content in files.items():
-        (folder / name).write_bytes(content)
-    target = folder / "rebuilt.so"
-    fixed = ("-shared", "-fPIC", "-fvisibility=hidden", "-g", "-O1", "-ffp-contract=off")
-    parts = [name for name in native_form.shim_sources(version) if name.endswith(".c")]
-    command = [*(c_compiler() or ["cc"]), *fixed, *options, "-o", target, *parts, "kernel.o"]
-    run_compiler(command, folder)
-    return target
 
 
 def settings(values: Mapping[str, float]) -> list[str]:
@@ -194,26 +173,25 @@ def importer(version: str, fmu: Path, folder: Path) -> Importer:
     return Importer(program, unpack_binary(fmu, version, folder), version)
 
 
-def kernel_objects(model: str, sanitizer: Sequence[str] = ()) -> dict[str, bytes]:
-    """Compile a model's C kernel; return a dict from this machine's platform to its object file.
-
-    With a sanitizer by the machine's own compiler.
-    """
-    source = kernel_c_source(forms.MODELS[model])
-    if not sanitizer:
-        return {platform_of_this_machine(): compile_kernel(platform_of_this_machine(), source)}
-    fixed = ("-c", "-fPIC", "-g", "-O2", "-ffp-contract=off", "-DINLINE=inline")
-    command = (*(c_compiler() or ["cc"]), *fixed, *sanitizer, "kernel.c", "-o", "kernel.o")
-    return {platform_of_this_machine(): compile_object(command, source, "kernel with a sanitizer")}
-
-
 def importer_with_sanitizer(
     version: str, model: str, exported: Path, folder: Path, sanitizer: Sequence[str]
 ) -> Importer:
     """Compile importer, shim and kernel of a model with a sanitizer in all; return the importer."""
-    path = exported / version / f"{model}.fmu"
-    options = ("-O1", "-g", *sanitizer)
-    program = compile_importer(version, path, folder / "importer", options=options)
-    objects = kernel_objects(model, sanitizer)
-    library = rebuild_shim(version, folder / "shim", objects, sanitizer, forms.MODELS[model])
-    return Importer(program, library, version)
+    path, name = exported / version / f"{model}.fmu", forms.MODELS[model]
+    program = compile_importer(
+        version, path, folder / "importer", options=("-O1", "-g", *sanitizer)
+    )
+    command = (*c_compiler(), "-fPIC", "-g", "-ffp-contract=off", *sanitizer)
+    optimised = (*command, "-c", "-O2", "-DINLINE=inline")
+    kernel = compile_object(optimised, kernel_c_source(name), "kernel with a sanitizer")
+    token, shim = native_form.native_fmu_guid(name, version), native_form.shim_sources(version)
+    header = model_header(sources.load_model(name), token, sources.model_digest(name))
+    files = {**shim, **native_form.fmi_headers(version), "model.h": header, "kernel.o": kernel}
+    place = folder / "shim"
+    place.mkdir()
+    for file, content in files.items():
+        (place / file).write_bytes(content)
+    parts = [file for file in files if file.endswith((".c", ".o"))]
+    shared = ("-shared", "-fvisibility=hidden", "-O1", "-o", "rebuilt.so")
+    run_compiler([*command, *shared, *parts], place)
+    return Importer(program, place / "rebuilt.so", version)

@@ -5,6 +5,7 @@ the Windows one runs the same.
 import os
 import re
 import shutil
+import subprocess
 import zipfile
 from importlib.util import find_spec
 
@@ -16,7 +17,6 @@ from fmu_src.export.errors import CannotExport
 from tests import importers
 
 from ..fmu.programs.driver import COMMON, harmonic
-from .object_files import Elf, Pe, needs_objdump, objdump
 from .test_calls import functions_of_header
 
 LIBC = {
@@ -28,6 +28,48 @@ LOADER = {
     *("_ITM_deregisterTMCloneTable", "_ITM_registerTMCloneTable"),
 }
 WINE = next(filter(None, map(shutil.which, ("wine64", "wine", "/usr/lib/wine/wine64"))), None)
+
+
+needs_objdump = pytest.mark.skipif(not shutil.which("objdump"), reason="objdump is not installed")
+# made read-only by the loader, or the compiler's own frame
+FIXED = r"\.(data\.rel\.ro|dynamic|got|relro_padding|init_array|fini_array)"
+
+
+def objdump(option, path):
+    done = subprocess.run(["objdump", option, path], capture_output=True, text=True, check=True)
+    return done.stdout
+
+
+class Elf:
+    """A library for Linux: names of dynamic symbols, libraries, bytes that stay writable."""
+
+    def __init__(self, path):
+        rows = [
+            line for line in objdump("-T", path).splitlines() if re.match("[0-9a-f]{16} ", line)
+        ]
+        self.imports = {row.split()[-1] for row in rows if "*UND*" in row}
+        self.exports = {row.split()[-1] for row in rows if "*UND*" not in row}
+        self.needed = set(re.findall(r"NEEDED +(\S+)", objdump("-p", path)))
+        sections = re.findall(r"^ +\d+ (\S+) +(\w+) .*\n +(.*)$", objdump("-h", path), re.MULTILINE)
+        self.writable = sum(
+            int(size, 16)
+            for name, size, flags in sections
+            if "ALLOC" in flags and "READONLY" not in flags and not re.match(FIXED, name)
+        )
+
+
+class Pe:
+    """A DLL for 64-bit Windows: exports, and imported names by library."""
+
+    def __init__(self, path):
+        text = objdump("-p", path)
+        assert "file format pei-x86-64" in text
+        table = text.partition("[Ordinal/Name Pointer] Table")[2].partition("\n\n")[0]
+        self.exports = set(re.findall(r"^\s+\[.* (\w+)$", table, re.MULTILINE))
+        parts = re.findall(r"DLL Name: (\S+)\n.*\n((?:\t.*\n)*)", text)
+        self.imports = {
+            name: {row.split()[-1] for row in rows.splitlines()} for name, rows in parts
+        }
 
 
 @needs_objdump
@@ -67,7 +109,7 @@ def test_windows_binary_exports_fmi_and_imports_the_system(fmus, version, tmp_pa
 def test_windows_binary_has_the_same_bits(fmus, importer_of, version, tmp_path):
     """Slow at the first use of ziglang and wine: both prepare themselves for minutes."""
     command = importers.zig_compiler("x86_64-windows-gnu")
-    if command is None:
+    if not command:
         pytest.skip("the importer for Windows is compiled by ziglang")
     program = importers.compile_importer(version, fmus[version], tmp_path / "importer", command)
     library = importers.unpack_binary(fmus[version], version, tmp_path, windows=True)

@@ -4,18 +4,14 @@ process of its own, through chaos.
 
 import pytest
 
-from ..fmu.driver import PROGRAMS
+from ..fmu import driver
 from ..fmu.programs.driver import COMMON, STATE, harmonic, open_fmu
-from ..fresh import run_fresh
 from ..sparing import ordinary
 
 
-def run(fmu, tmp_path, end, count, values, **options):
-    tmp_path.mkdir()
-    arguments = (fmu, end, count, values, COMMON)
-    found, done = run_fresh(PROGRAMS, "bits.simulate", *arguments, cwd=tmp_path, **options)
-    assert "Traceback" not in done.stderr
-    return found
+def run(fmu, folder, end, count, values, **options):
+    folder.mkdir()
+    return driver.run("runs.simulate", fmu, end, count, values, COMMON, cwd=folder, **options)
 
 
 @pytest.mark.parametrize("eta", ordinary([1.13, 2.9]))

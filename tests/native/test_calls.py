@@ -6,9 +6,8 @@ import pytest
 
 from fmu_src.export import native_form
 
-from ..fmu.driver import MODELS, path_of
+from ..fmu.driver import MODELS, VERSIONS, path_of
 from ..fmu.programs.driver import open_fmu
-from .conftest import VERSIONS
 
 NEW, INITIALIZING, STEPPING, TERMINATED, BETWEEN_EVENTS, AT_EVENT = range(6)
 INPUTS = {

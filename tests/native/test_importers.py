@@ -10,19 +10,16 @@ from pathlib import Path
 
 import pytest
 
-from fmu_src.export import forms
 from tests import importers
 
+from ..fmu.driver import PAIRS, path_of
 from ..fmu.programs.driver import COMMON, harmonic, open_fmu
 from ..sparing import ordinary
-from .conftest import VERSIONS
 
 HERE = Path(__file__).parent
-MODELS = tuple(forms.MODELS)
 VALGRIND = ("valgrind", "-q", "--error-exitcode=9", "--leak-check=full")
 VALGRIND += ("--errors-for-leak-kinds=all", "--show-leak-kinds=all")
 SANITIZERS = {"address": importers.SANITIZE, "thread": ("-fsanitize=thread",)}
-PAIRS = [(version, model) for version in VERSIONS for model in MODELS]
 RANDOM = ("random", 7, 100)
 
 
@@ -67,12 +64,11 @@ def test_a_thousand_instances_and_four_threads(importer):
 
 
 @pytest.fixture(scope="module", params=ordinary(PAIRS, PAIRS[3:4]), ids="-".join)
-def importer_of_model(request, exported, fmus, tmp_path_factory):
+def importer_of_model(request, fmus, tmp_path_factory):
     version, model = request.param
-    if importers.own_compiler_command() is None:
+    if not importers.own_compiler_command():
         pytest.skip("there is no C compiler")
-    path = exported / version / f"{model}.fmu"
-    return importers.importer(version, path, tmp_path_factory.mktemp("model"))
+    return importers.importer(version, path_of(model, version), tmp_path_factory.mktemp("model"))
 
 
 def seeds(version):
@@ -108,7 +104,7 @@ def test_no_leak_and_no_error_under_valgrind_at_length(importer_of_model):
 def test_no_error_with_sanitizers_in_the_shim(exported, fmus, tmp_path, pair, sanitizer):
     """Address, undefined behaviour and leaks; or threads."""
     options = SANITIZERS[sanitizer]
-    if importers.own_compiler_command() is None:
+    if not importers.own_compiler_command():
         pytest.skip("no C compiler of the machine's own: ziglang's sanitizers load from no library")
     (tmp_path / "empty.c").write_text("int main(void) { return 0; }\n")
     command = [*importers.own_compiler_command(), *options, "empty.c", "-o", "empty"]

@@ -7,7 +7,6 @@ import fmpy
 import pytest
 from fmpy import fmi2, fmi3
 
-from ..fmu.driver import MODELS, path_of
 from ..fmu.programs import driver
 from ..fmu.programs.driver import Fmu2, callbacks, describe, harmonic, hear, messages, open_fmu
 
@@ -45,20 +44,19 @@ def test_another_token_is_shown_beside_the_fmus_own(fmus, version):
     assert ("GUID" in message) == (version == "fmi2")
 
 
-@pytest.mark.parametrize("model", MODELS)
-def test_a_message_needs_no_arguments(exported, model):
+def test_a_message_needs_no_arguments(fmus):
     """Importers that show the format as it is, and those that fill it in, show the same text."""
-    path = path_of(model, "fmi2")
+    path = fmus["fmi2"]
     raw = fmi2.fmi2CallbackFunctions()  # no proxy: the format itself arrives
     raw.logger, raw.allocateMemory, raw.freeMemory = driver.LOGGER, *driver.allocation()
-    fmu, variable = bare(path, "fmi2", describe(path).guid), describe(path).modelVariables[0]
+    fmu = bare(path, "fmi2", describe(path).guid)
     fmu.instantiate(callbacks=raw)
     messages.clear()
     with pytest.raises(Exception, match="fmi2SetReal"):
         fmu.setReal([0], [float("nan")])
     fmu.freeInstance()
     (text,) = messages
-    assert f"{variable.name} = nan {variable.unit}: expected " in text
+    assert "m1 = nan kg: expected " in text
     assert text.count("%") % 2 == 0
 
 

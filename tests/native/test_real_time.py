@@ -6,15 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.real_time import footprint, sources, targets
+from tests.real_time import footprint, targets
 
+from ..fmu.driver import MODELS, PAIRS, path_of
 from ..sparing import ordinary
 
 HERE = Path(__file__).parent
 MANUAL = HERE.parents[1] / "docs" / "real_time.md"
-MODELS = ("TwoMassImpactOscillator", "MotorShaker", "ElectrodynamicShaker")
-VERSIONS = ("fmi2", "fmi3")
-PAIRS = [(version, model) for version in VERSIONS for model in MODELS]
 WARNINGS = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Wvla", "-Werror")
 # what C's library has to have: nothing of it is a file, a lock or a clock
 LIBRARY = {"calloc", "malloc", "free", "sqrt", "fabs", "snprintf", "strtod", "strtol"} | {
@@ -25,16 +23,15 @@ OF_A_STEP = {"sqrt", "fabs", "memcpy", "memset", "memmove"}
 
 
 def needs(*programs):
-    absent = sources.missing_programs(*programs)
+    absent = targets.missing_programs(*programs)
     return pytest.mark.skipif(bool(absent), reason=f"expected {', '.join(absent)} on this machine")
 
 
 @pytest.fixture(scope="module")
-def folders(exported, fmus, tmp_path_factory):
+def folders(fmus, tmp_path_factory):
     assert fmus
     place = tmp_path_factory.mktemp("sources")
-    fmu = lambda version, model: exported / version / f"{model}.fmu"  # noqa: E731
-    return {(v, m): sources.unpack(fmu(v, m), place / v / m) for v, m in PAIRS}
+    return {(v, m): targets.unpack(path_of(m, v), place / v / m) for v, m in PAIRS}
 
 
 @needs("gcc")
@@ -44,9 +41,9 @@ def test_nothing_is_allocated_after_instantiation(folders, tmp_path):
     """
     folder, program = folders["fmi3", MODELS[0]], HERE / "no_allocation.c"
     flags = ["-O0", "-std=c99", "-fno-builtin-malloc"]
-    command = ["gcc", *flags, f"-I{folder}", *sources.c_files(folder), program, "-lm", "-o", "run"]
+    command = ["gcc", *flags, f"-I{folder}", *targets.c_files(folder), program, "-lm", "-o", "run"]
     subprocess.run(command, cwd=tmp_path, check=True)
-    before, after, events = map(int, sources.run_command(tmp_path / "run").split())
+    before, after, events = map(int, targets.run_command(tmp_path / "run").split())
     assert before == 2  # the instance, and its name
     assert after == 0
     assert events > 1000
@@ -68,12 +65,12 @@ def test_no_function_calls_itself_and_a_step_nothing_that_allocates_waits_or_wri
 
 @pytest.mark.parametrize("pair", PAIRS, ids="-".join)
 def test_no_compiler_warns(folders, pair):
-    compilers = [name for name in ("gcc", "clang") if not sources.missing_programs(name)]
+    compilers = [name for name in ("gcc", "clang") if not targets.missing_programs(name)]
     if not compilers:
         pytest.skip("expected gcc or clang on this machine")
     for compiler in compilers:
-        files = sources.c_files(folders[pair])
-        sources.run_command(compiler, *WARNINGS, "-fsyntax-only", *files)
+        files = targets.c_files(folders[pair])
+        targets.run_command(compiler, *WARNINGS, "-fsyntax-only", *files)
 
 
 @pytest.mark.slow
@@ -82,10 +79,10 @@ def test_sources_of_several_fmus_share_no_name(folders, tmp_path):
     """By the prefix of the standard's headers, all of them can be linked into one program."""
     for version, model in (("fmi2", MODELS[0]), ("fmi3", MODELS[1])):
         define = f"-D{version.upper()}_FUNCTION_PREFIX=Own_"
-        for file in sources.c_files(folders[version, model]):
+        for file in targets.c_files(folders[version, model]):
             made = tmp_path / f"{version}-{file.stem}.o"
-            sources.run_command("gcc", "-O0", *sources.BITS, define, "-c", file, "-o", made)
-            names = sources.run_command("nm", "-g", "--defined-only", made).split()[2::3]
+            targets.run_command("gcc", "-O0", *targets.BITS, define, "-c", file, "-o", made)
+            names = targets.run_command("nm", "-g", "--defined-only", made).split()[2::3]
             assert names and all(name.startswith("Own_") for name in names), file.name
 
 
@@ -103,7 +100,7 @@ def stated(machine, what):
 def test_the_manual_states_the_stack(folders, machine):
     """As upper bounds, by the call graph, for another version of the compiler too."""
     compiler, *flags = footprint.MACHINES[machine]
-    if sources.missing_programs(compiler):
+    if targets.missing_programs(compiler):
         pytest.skip(f"expected {compiler} on this machine")
     graph = footprint.call_graph(folders["fmi3", MODELS[0]], compiler, *flags, "-O2")
     for what, name in footprint.CALLS.items():
@@ -143,7 +140,7 @@ def test_a_bare_cortex_m7_has_the_bits_of_the_desktop(folders, optimisation, tmp
 
 @pytest.mark.slow
 @needs("gcc", *targets.TOOLS["RISC-V 64"])
-@pytest.mark.parametrize("standard", [sources.BITS, ("-std=gnu99",), ("-ffp-contract=fast",)])
+@pytest.mark.parametrize("standard", [targets.BITS, ("-std=gnu99",), ("-ffp-contract=fast",)])
 def test_riscv_has_the_bits_of_the_desktop(folders, standard, tmp_path):
     """gcc fuses there unless it is told not to: the sources tell it themselves."""
     folder = folders["fmi3", MODELS[0]]

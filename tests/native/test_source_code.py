@@ -1,6 +1,7 @@
 """The C inside the FMUs: what a bare compiler makes of it, and that it defends its bits."""
 
 import platform
+import re
 import shutil
 import subprocess
 import sys
@@ -14,10 +15,10 @@ from fmpy.validation import validate_fmu
 
 from fmu_src.export import compiler, forms
 
-from ..fmu.driver import PROGRAMS
-from ..fmu.programs.driver import COMMON, harmonic
-from ..fresh import run_fresh
+from ..fmu.driver import OSCILLATOR, VERSIONS
+from ..fmu.programs.driver import harmonic
 from ..sparing import ordinary
+from .test_bit_identity import run
 
 GCC = shutil.which("gcc")
 BARE = ("-std=c99", "-ffp-contract=off")
@@ -32,30 +33,28 @@ pytestmark = pytest.mark.skipif(
 def unpacked(fmu, folder):
     with zipfile.ZipFile(fmu) as archive:
         archive.extractall(folder)
-    shutil.rmtree(folder / "binaries")
+    shutil.rmtree(folder / "binaries", ignore_errors=True)
     return folder
 
 
-def compiled(folder, version, name, *flags, compiler=(GCC,)):
-    """The folder as an FMU with a library made of its own sources."""
-    target = folder / "binaries" / FOLDERS[version] / f"{name}.so"
+def packed(folder):
+    shutil.make_archive(str(folder), "zip", folder)
+    return folder.with_suffix(".zip").rename(folder.with_suffix(".fmu"))
+
+
+def compiled(folder, version, *flags):
+    """The folder as an FMU with a library made of its own sources, and what gcc has to say."""
+    target = folder / "binaries" / FOLDERS[version] / f"{OSCILLATOR}.so"
     target.parent.mkdir(parents=True)
-    sources = sorted(map(str, (folder / "sources").glob("*.c")))
-    command = [*compiler, *flags, "-shared", "-fPIC", *sources, "-o", str(target)]
+    command = [GCC, *flags, "-shared", "-fPIC", *(folder / "sources").glob("*.c"), "-o", target]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    fmu = folder.with_suffix(".fmu")
-    shutil.make_archive(str(folder), "zip", folder)
-    folder.with_suffix(".zip").rename(fmu)
-    return fmu, done.stderr
+    return packed(folder), done.stderr
 
 
 def rows(fmu, folder):
     """Common outputs through chaos, as hexadecimal numbers."""
-    folder.mkdir()
-    arguments = (fmu, 2048.0, 32, {**harmonic(1.13), "e": 0.7, "d1": 0.01, "d2": 0.01}, COMMON)
-    found, _ = run_fresh(PROGRAMS, "bits.simulate", *arguments, cwd=folder)
-    return found["rows"]
+    return run(fmu, folder, 2048.0, 32, harmonic(1.13))["rows"]
 
 
 @pytest.fixture(scope="module")
@@ -67,8 +66,7 @@ def reference(fmus, tmp_path_factory):
 @pytest.mark.parametrize("flags", [FAST, ("-Ofast", "-mfma"), ("-O0",), ("-O3", "-march=native")])
 def test_fast_options_change_no_bit(fmus, flags, tmp_path, reference):
     """The sources say what gcc may not do."""
-    folder = unpacked(fmus["fmi2"], tmp_path / "fmu")
-    fmu, _ = compiled(folder, "fmi2", "TwoMassImpactOscillator", *flags)
+    fmu, _ = compiled(unpacked(fmus["fmi2"], tmp_path / "fmu"), "fmi2", *flags)
     assert rows(fmu, tmp_path / "run") == reference
 
 
@@ -79,7 +77,7 @@ def test_other_bits_are_refused_at_instantiation(fmus, version, tmp_path):
     kernel = folder / "sources" / "kernel.c"
     lines = kernel.read_text("utf-8").splitlines(keepends=True)
     kernel.write_text("".join(line for line in lines if "GCC optimize" not in line), "utf-8")
-    fmu, _ = compiled(folder, version, "TwoMassImpactOscillator", *FAST)
+    fmu, _ = compiled(folder, version, *FAST)
     # in a process of its own: gcc lets such a library flush small numbers to 0 in the whole process
     program = (
         "import fmpy, sys; fmpy.simulate_fmu(sys.argv[1], logger=lambda *args: print(args[-1]))"
@@ -92,16 +90,14 @@ def test_other_bits_are_refused_at_instantiation(fmus, version, tmp_path):
 
 def test_the_description_names_the_sources(fmus):
     """All that is compiled, and nothing else: FMI 2.0 in the model description, 3.0 beside it."""
-    with zipfile.ZipFile(fmus["fmi2"]) as archive:
-        root = ET.fromstring(archive.read("modelDescription.xml"))
-        told = [file.get("name") for file in root.iter("File")]
-        inside = [name for name in archive.namelist() if name.startswith("sources/")]
-    assert told == sorted(name.partition("/")[2] for name in inside if name.endswith(".c"))
-    with zipfile.ZipFile(fmus["fmi3"]) as archive:
-        root = ET.fromstring(archive.read("sources/buildDescription.xml"))
-        inside = [name for name in archive.namelist() if name.startswith("sources/")]
-    told = [file.get("name") for file in root.iter("SourceFile")]
-    assert told == sorted(name.partition("/")[2] for name in inside if name.endswith(".c"))
+    for form, description, tag in (
+        ("fmi2", "modelDescription.xml", "File"),
+        ("fmi3", "sources/buildDescription.xml", "SourceFile"),
+    ):
+        with zipfile.ZipFile(fmus[form]) as archive:
+            told = {f.get("name") for f in ET.fromstring(archive.read(description)).iter(tag)}
+            inside = {n for n in archive.namelist() if re.fullmatch(r"sources/.*\.c", n)}
+        assert {f"sources/{name}" for name in told} == inside
 
 
 @pytest.fixture(scope="module")
@@ -111,16 +107,13 @@ def without_binaries(tmp_path_factory):
     wanted = forms.source_forms_of(forms.FORMS + forms.PLAIN_FORMS)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(compiler, "run_compiler", None)
-        return {form: forms.export("TwoMassImpactOscillator", form, build) for form in wanted}
+        return {form: forms.export(OSCILLATOR, form, build) for form in wanted}
 
 
 def test_each_form_has_a_guid_of_its_own(without_binaries):
     """No FMU of sources alone is taken for one that can be run as it is."""
-    assert set(without_binaries) == {
-        *("fmi2-sources", "fmi3-sources", "fmi2-plain-sources", "fmi3-plain-sources")
-    }
-    guids = [forms.fmu_guid("TwoMassImpactOscillator", form) for form in forms.ALL_FORMS]
-    assert len(set(guids)) == len(forms.ALL_FORMS) == 9
+    assert set(without_binaries) == set(forms.ALL_FORMS[5:])
+    assert len({forms.fmu_guid(OSCILLATOR, form) for form in forms.ALL_FORMS}) == 9
 
 
 def test_a_description_of_sources_alone_is_true(without_binaries, fmus):
@@ -133,7 +126,7 @@ def test_a_description_of_sources_alone_is_true(without_binaries, fmus):
         assert "sources/kernel.c" in names and "there is no binary inside" in page
         assert validate_fmu(str(path)) == []
         found = fmpy.read_model_description(str(path))
-        assert found.guid == forms.fmu_guid("TwoMassImpactOscillator", form)
+        assert found.guid == forms.fmu_guid(OSCILLATOR, form)
         if "plain" not in form:
             whole = fmpy.read_model_description(str(fmus[form[:4]]))
             assert repr(found.coSimulation) == repr(whole.coSimulation)
@@ -144,13 +137,10 @@ def test_a_description_of_sources_alone_is_true(without_binaries, fmus):
 def test_a_bare_compiler_makes_the_bits_of_the_binary(without_binaries, form, tmp_path, reference):
     """And no name is exported that is not FMI's: the C library has functions of the same names."""
     version = form[:4]
-    with zipfile.ZipFile(without_binaries[form]) as archive:
-        archive.extractall(tmp_path / "fmu")
-    fmu, warnings = compiled(
-        tmp_path / "fmu", version, "TwoMassImpactOscillator", *BARE, "-Wall", "-Wextra"
-    )
+    folder = unpacked(without_binaries[form], tmp_path / "fmu")
+    fmu, warnings = compiled(folder, version, *BARE, "-Wall", "-Wextra")
     assert warnings == ""
-    library = tmp_path / "fmu" / "binaries" / FOLDERS[version] / "TwoMassImpactOscillator.so"
+    library = folder / "binaries" / FOLDERS[version] / f"{OSCILLATOR}.so"
     table = subprocess.run(["nm", "-D", "--defined-only", library], capture_output=True, text=True)
     names = [line.split()[-1] for line in table.stdout.splitlines()]
     assert names and all(name.startswith(version) for name in names)
@@ -158,7 +148,7 @@ def test_a_bare_compiler_makes_the_bits_of_the_binary(without_binaries, form, tm
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("version", FOLDERS)
+@pytest.mark.parametrize("version", VERSIONS)
 def test_fmpy_and_cmake_make_libraries(fmus, version, tmp_path, reference):
     """FMPy's own way through CMake, and the CMakeLists.txt inside."""
     if shutil.which("cmake") is None:
@@ -166,8 +156,6 @@ def test_fmpy_and_cmake_make_libraries(fmus, version, tmp_path, reference):
     folder = unpacked(fmus[version], tmp_path / "fmu")
     subprocess.run(["cmake", "-S", folder / "sources", "-B", tmp_path / "made"], check=True)
     subprocess.run(["cmake", "--build", tmp_path / "made"], check=True)
-    assert (tmp_path / "made" / "TwoMassImpactOscillator.so").is_file()
+    assert (tmp_path / "made" / f"{OSCILLATOR}.so").is_file()
     build_platform_binary(folder)
-    shutil.make_archive(str(folder), "zip", folder)
-    fmu = folder.with_suffix(".zip").rename(folder.with_suffix(".fmu"))
-    assert rows(fmu, tmp_path / "run") == reference
+    assert rows(packed(folder), tmp_path / "run") == reference

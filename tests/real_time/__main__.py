@@ -14,7 +14,7 @@ from orchestrate.fmu import OSCILLATOR, find_or_export
 from orchestrate.model import Structure
 from tests import importers
 
-from .sources import HERE
+from .targets import HERE
 
 # chattering into permanent contact each period, up to 0.4; flights of one and many impacts; chaos
 FREQUENCIES = (0.1, 0.2, 0.3, 0.4, 0.6, 1.13, 2.0, 2.9)

@@ -7,7 +7,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from .sources import BITS, CORTEX_M7, c_files, run_command
+from .targets import BITS, CORTEX_M7, c_files, run_command
 
 NODE = re.compile(r'node: \{ title: "([^"]+)" label: "([^"]*)"')
 EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
@@ -32,19 +32,14 @@ class CallGraph:
     sizes: dict[str, int]
     called: dict[str, set[str]]
 
-    def stack_bytes(self, function: str, without: tuple[str, ...] = ()) -> int:
-        """Return the stack bytes of a call, without those of the C library."""
-        return self._stack_bytes(function, without, ())
-
-    def _stack_bytes(self, function: str, without: tuple[str, ...], path: tuple[str, ...]) -> int:
-        """Return the stack bytes of a call below a path of callers; raise at recursion."""
+    def stack_bytes(
+        self, function: str, without: tuple[str, ...] = (), path: tuple[str, ...] = ()
+    ) -> int:
+        """Return the stack bytes of a call, without the C library's; raise if it is in its path."""
         if function in path:
             raise RecursionError(" -> ".join([*path, function]))
-        inner = [
-            self._stack_bytes(other, without, (*path, function))
-            for other in self.called.get(function, ())
-            if plain_name(other) not in without
-        ]
+        called = [one for one in self.called.get(function, ()) if plain_name(one) not in without]
+        inner = (self.stack_bytes(other, without, (*path, function)) for other in called)
         return self.sizes.get(function, 0) + max(inner, default=0)
 
     def library_functions(self, function: str, without: tuple[str, ...] = ()) -> set[str]:

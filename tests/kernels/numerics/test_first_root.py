@@ -50,25 +50,18 @@ def clear_steps(h, reach):
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_clear_step_passes_no_root(seed):
+def test_no_step_passes_a_root(seed):
+    """A clear one, and by the whole bound that of the walk, whether or not it ends on the root."""
     h, reach = starts(seed)
-    step = clear_steps(h, reach)
-    assert (step > 0.0).all() and (step <= reach).all()
-    at = step[:, None] * PARTS
-    assert (value(h, at) >= -4e-15 * value(np.abs(h), at)).all()
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_a_step_of_the_walk_passes_no_root(seed):
-    """By the whole bound, from inside and from the boundary, whether or not it ends on the root."""
-    h, reach = starts(seed)
-    rows = zip(h.tolist(), reach.tolist(), strict=True)
-    ends = (
-        kernel.clear_step_or_root(*row[:5], -row[5], 1.0, far, 1e-15 * abs(row[0]))
-        for row, far in rows
-    )
-    at = np.array([step for step, _ in ends])[:, None] * PARTS
-    assert (value(h, at) >= -1.5e-14 * value(np.abs(h), at)).all()
+    clear = clear_steps(h, reach)
+    assert (clear > 0.0).all() and (clear <= reach).all()
+    walked = [
+        kernel.clear_step_or_root(*row[:5], -row[5], 1.0, far, 1e-15 * abs(row[0]))[0]
+        for row, far in zip(h.tolist(), reach.tolist(), strict=True)
+    ]
+    for steps, rounding in ((clear, 4e-15), (np.array(walked), 1.5e-14)):
+        at = steps[:, None] * PARTS
+        assert (value(h, at) >= -rounding * value(np.abs(h), at)).all()
 
 
 def test_a_clear_step_is_most_of_the_way_where_all_bends_one_way():
@@ -84,22 +77,19 @@ def test_a_clear_step_is_most_of_the_way_where_all_bends_one_way():
         assert positive[:, 0][times * step < reach].mean() <= share
 
 
+def lowest_curvatures(h, s):
+    rows = zip(h.tolist(), s.tolist(), strict=True)
+    return np.array([kernel.lowest_parabola_curvature(*r[2:5], -r[5], far) for r, far in rows])
+
+
 def test_the_parabola_touches_the_quintic_at_the_trial():
     h, s = starts(2)
     h[:, 2] = np.abs(h[:, 2])
     h[:, 3:] = -np.abs(h[:, 3:])
     expected = 2.0 * (value(h, s[:, None])[:, 0] - h[:, 0] - h[:, 1] * s) / s**2
-    rows = zip(h.tolist(), s.tolist(), strict=True)
-    found = np.array(
-        [kernel.lowest_parabola_curvature(*row[2:5], -row[5], far) for row, far in rows]
-    )
-    assert np.abs(found - expected).max() < 1e-9
+    assert np.abs(lowest_curvatures(h, s) - expected).max() < 1e-9
     mixed, s = starts(3)
-    rows = zip(mixed.tolist(), s.tolist(), strict=True)
-    least = np.array(
-        [kernel.lowest_parabola_curvature(*row[2:5], -row[5], far) for row, far in rows]
-    )
-    parabola = np.column_stack([mixed[:, :2], least])
+    parabola = np.column_stack([mixed[:, :2], lowest_curvatures(mixed, s)])
     at = s[:, None] * PARTS
     assert (value(parabola, at) <= value(mixed, at) + 1e-14 * value(np.abs(mixed), at)).all()
 
