@@ -5,18 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from .platforms import select_platforms
-
-__all__ = [
-    "ALL_FORMS",
-    "FORMS",
-    "MODELS",
-    "PLAIN_FORMS",
-    "export",
-    "fmu_guid",
-    "select_platforms",
-    "source_forms_of",
-]
 PYTHON_FORM = "fmi2-python"
 FORMS = (PYTHON_FORM, "fmi2", "fmi3")
 PLAIN_FORMS = ("fmi2-plain", "fmi3-plain")

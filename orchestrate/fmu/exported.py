@@ -12,6 +12,7 @@ from typing import Any
 
 from fmu_src.export import forms as sources
 from fmu_src.export.errors import CannotExport
+from fmu_src.export.platforms import select_platforms
 
 from ..errors import InputError, StoreError
 from ..files import (
@@ -55,7 +56,7 @@ def build(
     target = default_folder() if folder is None else Path(folder)
     written, reasons = [], []
     try:
-        chosen = sources.select_platforms(platforms)
+        chosen = select_platforms(platforms)
     except CannotExport as reason:
         raise InputError(str(reason)) from None
     for form, name in pairs:

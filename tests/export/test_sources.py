@@ -10,8 +10,7 @@ import pytest
 
 from fmu_src.export import forms, pythonfmu_form, sources
 from fmu_src.export.errors import CannotExport
-
-from ..fresh import ROOT
+from tests import ROOT
 
 IMPORTING = """
 import importlib, sys

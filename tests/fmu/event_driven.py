@@ -32,6 +32,7 @@ class Motion:
     def __init__(self, values, acceleration=None):
         self.p = p = {**dict.fromkeys(ZERO, 0.0), "wall": False, **values}
         self.since = dict.fromkeys(CUBICS, 0.0)  # when each cubic began
+        self.read_drives()
         self.phase, self.begun = p["phase_start"], 0.0  # of the harmonics, at that time
         self.share = (0.0, 1.0) if p["wall"] else (p["m1"], p["m2"])  # in what is common
         self.acceleration = acceleration or (lambda _: 0.0)  # of the box, beside the harmonic one
@@ -69,9 +70,16 @@ class Motion:
             if any(name in values for name in names):
                 self.since[kind] = self.time
         p |= values
+        self.read_drives()
         if self.mode == CONTACT:
             self.releases += self.part_or_stay()
         return self
+
+    def read_drives(self):
+        p = self.p
+        self.cubics = {kind: [p[name] for name in names] for kind, names in CUBICS.items()}
+        self.amplitudes = {half: p[f"force{half}_amplitude"] for half in (1, 2)}
+        self.shaking = p["box_amplitude"] * p["box_frequency"] ** 2
 
     def part_or_stay(self):
         """Touching with one velocity: whether the masses part, by the sign of the acceleration
@@ -91,16 +99,14 @@ class Motion:
 
     def cubic(self, kind, t):
         s = t - self.since[kind]
-        c0, c1, c2, c3 = (self.p[name] for name in CUBICS[kind])
+        c0, c1, c2, c3 = self.cubics[kind]
         return c0 + s * (c1 + s * (c2 / 2.0 + s * c3 / 6.0))
 
     def box(self, t):
-        p = self.p
-        harmonic = p["box_amplitude"] * p["box_frequency"] ** 2 * self.harmonic(t)
-        return self.acceleration(t) + self.cubic("box", t) - harmonic
+        return self.acceleration(t) + self.cubic("box", t) - self.shaking * self.harmonic(t)
 
     def force(self, half, t):
-        return self.p[f"force{half}_amplitude"] * self.harmonic(t) + self.cubic(half, t)
+        return self.amplitudes[half] * self.harmonic(t) + self.cubic(half, t)
 
     def accelerations(self, t, y):
         """Of each mass alone, relative to the box; a wall has none."""

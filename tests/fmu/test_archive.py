@@ -12,7 +12,8 @@ import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 
-from ..fresh import ROOT
+from tests import ROOT
+
 from .driver import FMUS, MODELS, path_of
 from .programs.driver import open_fmu
 

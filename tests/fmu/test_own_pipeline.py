@@ -1,6 +1,5 @@
 """``examples/ci``: the guarantees in a user's own pipeline, where there is nothing but FMPy."""
 
-import os
 import re
 import shutil
 import subprocess
@@ -8,16 +7,16 @@ import sys
 
 import pytest
 
-from ..fresh import OURS, ROOT
+from tests import ROOT
+
 from ..sparing import ordinary
-from .driver import FMUS
+from .driver import FMUS, environment_of_users
 
 
 def run_pipeline(fmu, folder):
     """The test file alone in a folder, as a user has it."""
     shutil.copy(ROOT / "examples" / "ci" / "test_fmu.py", folder)
-    environment = {key: value for key, value in os.environ.items() if key not in OURS}
-    environment |= {"PYTHONDONTWRITEBYTECODE": "1"} | ({"FMU": str(fmu)} if fmu else {})
+    environment = environment_of_users(PYTHONDONTWRITEBYTECODE="1", FMU=str(fmu))
     options = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:hypothesispytest"]
     command = [sys.executable, "-m", "pytest", *options, "test_fmu.py"]
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)

@@ -14,6 +14,12 @@
     F(GetDerivatives) F(GetEventIndicators) F(GetContinuousStates) F(GetNominalsOfContinuousStates)
 #define FMI_TYPE(NAME) fmi2##NAME##TYPE
 #define FMI_SYMBOL(NAME) "fmi2" #NAME
+#define REALS(VERB) VERB##Real
+#define INTEGERS(VERB) VERB##Integer
+#define STATE(VERB) VERB##FMUstate
+#define STATE_SIZE SerializedFMUstateSize
+#define DESERIALIZE DeSerializeFMUstate
+#define VALUES(x, count) x
 #define MEMBER(NAME) FMI_TYPE(NAME) *NAME;
 typedef struct { FUNCTIONS(MEMBER) } Functions;
 
@@ -25,21 +31,7 @@ typedef fmi2Status Status;
 typedef fmi2Integer Integer;
 typedef fmi2Boolean Boolean;
 typedef fmi2FMUstate State;
-static const Status FMI_OK = fmi2OK, FMI_WARNING = fmi2Warning, FMI_ERROR = fmi2Error, FMI_DISCARD = fmi2Discard;
-
-static inline Status get_reals(Instance c, const unsigned *r, size_t count, double *x) { return fmi.GetReal(c, r, count, x); }
-static inline Status set_reals(Instance c, const unsigned *r, size_t count, const double *x) { return fmi.SetReal(c, r, count, x); }
-static inline Status get_integers(Instance c, const unsigned *r, size_t count, Integer *x) { return fmi.GetInteger(c, r, count, x); }
-static inline Status set_integers(Instance c, const unsigned *r, size_t count, const Integer *x) { return fmi.SetInteger(c, r, count, x); }
-static inline Status get_booleans(Instance c, const unsigned *r, size_t count, Boolean *x) { return fmi.GetBoolean(c, r, count, x); }
-static inline Status set_booleans(Instance c, const unsigned *r, size_t count, const Boolean *x) { return fmi.SetBoolean(c, r, count, x); }
-
-static inline Status get_state(Instance c, State *state) { return fmi.GetFMUstate(c, state); }
-static inline Status set_state(Instance c, State state) { return fmi.SetFMUstate(c, state); }
-static inline Status free_state(Instance c, State *state) { return fmi.FreeFMUstate(c, state); }
-static inline Status serialized_size(Instance c, State state, size_t *size) { return fmi.SerializedFMUstateSize(c, state, size); }
-static inline Status serialize(Instance c, State state, char *bytes, size_t size) { return fmi.SerializeFMUstate(c, state, bytes, size); }
-static inline Status deserialize(Instance c, const char *bytes, size_t size, State *state) { return fmi.DeSerializeFMUstate(c, bytes, size, state); }
+static const Status FMI_OK = fmi2OK;
 
 /* Into initialization mode, with the experiment's times. */
 static inline Status start_experiment(Instance c, double start, bool has_stop, double stop) {

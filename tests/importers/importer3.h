@@ -19,6 +19,12 @@
     F(ActivateModelPartition)
 #define FMI_TYPE(NAME) fmi3##NAME##TYPE
 #define FMI_SYMBOL(NAME) "fmi3" #NAME
+#define REALS(VERB) VERB##Float64
+#define INTEGERS(VERB) VERB##Int32
+#define STATE(VERB) VERB##FMUState
+#define STATE_SIZE SerializedFMUStateSize
+#define DESERIALIZE DeserializeFMUState
+#define VALUES(x, count) x, count
 #define MEMBER(NAME) FMI_TYPE(NAME) *NAME;
 typedef struct { FUNCTIONS(MEMBER) } Functions;
 
@@ -29,27 +35,10 @@ typedef fmi3Status Status;
 typedef fmi3Int32 Integer;
 typedef fmi3Boolean Boolean;
 typedef fmi3FMUState State;
-static const Status FMI_OK = fmi3OK, FMI_WARNING = fmi3Warning, FMI_ERROR = fmi3Error, FMI_DISCARD = fmi3Discard;
+static const Status FMI_OK = fmi3OK;
 
 void take_message(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String text);
 Instance open_with(const char *name, bool event_mode, bool early_return);
-
-/* Of scalar variables: as many values as references. */
-static inline Status get_reals(Instance c, const unsigned *r, size_t count, double *x) { return fmi.GetFloat64(c, r, count, x, count); }
-static inline Status set_reals(Instance c, const unsigned *r, size_t count, const double *x) { return fmi.SetFloat64(c, r, count, x, count); }
-static inline Status get_integers(Instance c, const unsigned *r, size_t count, Integer *x) { return fmi.GetInt32(c, r, count, x, count); }
-static inline Status set_integers(Instance c, const unsigned *r, size_t count, const Integer *x) { return fmi.SetInt32(c, r, count, x, count); }
-static inline Status get_booleans(Instance c, const unsigned *r, size_t count, Boolean *x) { return fmi.GetBoolean(c, r, count, x, count); }
-static inline Status set_booleans(Instance c, const unsigned *r, size_t count, const Boolean *x) { return fmi.SetBoolean(c, r, count, x, count); }
-
-static inline Status get_state(Instance c, State *state) { return fmi.GetFMUState(c, state); }
-static inline Status set_state(Instance c, State state) { return fmi.SetFMUState(c, state); }
-static inline Status free_state(Instance c, State *state) { return fmi.FreeFMUState(c, state); }
-static inline Status serialized_size(Instance c, State state, size_t *size) { return fmi.SerializedFMUStateSize(c, state, size); }
-static inline Status serialize(Instance c, State state, char *bytes, size_t size) { return fmi.SerializeFMUState(c, state, (fmi3Byte *)bytes, size); }
-static inline Status deserialize(Instance c, const char *bytes, size_t size, State *state) {
-    return fmi.DeserializeFMUState(c, (const fmi3Byte *)bytes, size, state);
-}
 
 /* Into initialization mode, with the experiment's times. */
 static inline Status start_experiment(Instance c, double start, bool has_stop, double stop) {

@@ -10,7 +10,7 @@ import ast
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from types import FunctionType, ModuleType
-from typing import Any, Protocol
+from typing import Protocol
 
 from ..errors import CannotExport
 from .subset import original_definition, resolve_name, writes_memory
@@ -84,8 +84,8 @@ class Kernel(Protocol):
         """Return another function, translated."""
 
 
-class Expressions(ABC):
-    """Translator of the expressions in a function."""
+class Expressions(ast.NodeVisitor, ABC):
+    """Translator of the expressions in a function: a visit of one returns its value."""
 
     kernel: Kernel
     unit: Unit
@@ -127,33 +127,23 @@ class Expressions(ABC):
         return unit.name, unit.result
 
     def translate_expression(self, node: ast.expr) -> Value:
-        known: Mapping[type, Callable[[Any], Value]] = {
-            ast.Constant: self.translate_literal,
-            ast.Name: self.translate_name,
-            ast.Attribute: self.translate_name,
-            ast.Subscript: self.translate_subscript,
-            ast.BinOp: self.translate_operation,
-            ast.UnaryOp: self.translate_unary,
-            ast.BoolOp: self.translate_boolean_operation,
-            ast.Compare: self.translate_comparison,
-            ast.IfExp: self.translate_conditional_expression,
-            ast.Call: self.translate_call,
-            ast.Tuple: lambda node: self.make_tuple(self.translate_in_order(node.elts)),
-        }
-        if type(node) not in known:
-            raise self.refusal(node, ast.unparse(node), "numbers, slots, + - * / and calls")
-        return known[type(node)](node)
+        value = self.visit(node)
+        assert isinstance(value, Value)
+        return value
+
+    def visit_Tuple(self, node: ast.Tuple) -> Value:
+        return self.make_tuple(self.translate_in_order(node.elts))
 
     # -- what is read --
 
-    def translate_literal(self, node: ast.Constant) -> Value:
+    def visit_Constant(self, node: ast.Constant) -> Value:
         if isinstance(node.value, bool):
             return Value(str(int(node.value)), TRUTH)
         if isinstance(node.value, (int, float)):
             return Value(repr(node.value), WHOLE if isinstance(node.value, int) else REAL)
         raise self.refusal(node, repr(node.value), "a number")
 
-    def translate_name(self, node: ast.Name | ast.Attribute) -> Value:
+    def visit_Name(self, node: ast.Name | ast.Attribute) -> Value:
         if isinstance(node, ast.Name) and node.id in self.types:
             return Value(c_name(node.id), self.types[node.id])
         thing, module, name = self.resolve(node)
@@ -161,6 +151,8 @@ class Expressions(ABC):
             raise self.refusal(node, ast.unparse(node), "a number")
         kind = WHOLE if isinstance(thing, int) else REAL
         return Value(self.kernel.constant_name(module, name), kind)
+
+    visit_Attribute = visit_Name
 
     def resolve(self, node: ast.expr) -> tuple[object, ModuleType, str]:
         name = ast.unparse(node)
@@ -173,7 +165,7 @@ class Expressions(ABC):
             return thing, *original_definition(module, node.attr)
         return thing, *original_definition(self.module, name)
 
-    def translate_subscript(self, node: ast.Subscript) -> Value:
+    def visit_Subscript(self, node: ast.Subscript) -> Value:
         if self.is_constant_table(node.value):
             numbers, module, name = self.resolve(node.value)
             assert isinstance(numbers, tuple)
@@ -208,7 +200,7 @@ class Expressions(ABC):
 
     # -- what is computed --
 
-    def translate_operation(self, node: ast.BinOp) -> Value:
+    def visit_BinOp(self, node: ast.BinOp) -> Value:
         if type(node.op) not in OPERATORS:
             raise self.refusal(node, ast.unparse(node), "one of + - * / % &")
         sign, rank = OPERATORS[type(node.op)]
@@ -221,7 +213,7 @@ class Expressions(ABC):
         one, other = one.converted_to(kind), other.converted_to(kind)
         return Value(f"{one.text_within(rank)} {sign} {other.text_within(rank + 1)}", kind, rank)
 
-    def translate_unary(self, node: ast.UnaryOp) -> Value:
+    def visit_UnaryOp(self, node: ast.UnaryOp) -> Value:
         if isinstance(node.op, ast.Not):
             return Value(f"!{self.translate_test(node.operand).text_within(UNARY)}", TRUTH, UNARY)
         if not isinstance(node.op, ast.USub):
@@ -236,7 +228,7 @@ class Expressions(ABC):
             raise self.refusal(node, ast.unparse(node), "a comparison")
         return value
 
-    def translate_boolean_operation(self, node: ast.BoolOp) -> Value:
+    def visit_BoolOp(self, node: ast.BoolOp) -> Value:
         sign, rank = ("&&", AND) if isinstance(node.op, ast.And) else ("||", OR)
         first, *others = node.values
         values = [self.translate_test(first)]
@@ -244,7 +236,7 @@ class Expressions(ABC):
         # C's compilers ask for parentheses around && within ||
         return Value(f" {sign} ".join(value.text_within(BITS) for value in values), TRUTH, rank)
 
-    def translate_comparison(self, node: ast.Compare) -> Value:
+    def visit_Compare(self, node: ast.Compare) -> Value:
         first, *others = self.translate_in_order([node.left, *node.comparators])
         middle = [
             v if is_simple_name(v) or "(" not in v.text else self.keep_in_variable(v)
@@ -261,7 +253,7 @@ class Expressions(ABC):
             return pairs[0]
         return Value(" && ".join(pair.text for pair in pairs), TRUTH, AND)
 
-    def translate_conditional_expression(self, node: ast.IfExp) -> Value:
+    def visit_IfExp(self, node: ast.IfExp) -> Value:
         test = self.translate_test(node.test)
         parts = [node.body, node.orelse]
         one, other = self.translate_without_variables(parts, self.translate_expression)
@@ -284,7 +276,7 @@ class Expressions(ABC):
         texts = ", ".join(part.text for part in parts)
         return Value(f"({self.kernel.c_type_name(kind)}){{{texts}}}", kind)
 
-    def translate_call(self, node: ast.Call) -> Value:
+    def visit_Call(self, node: ast.Call) -> Value:
         name = ast.unparse(node.func)
         if node.keywords:
             raise self.refusal(node, ast.unparse(node), "arguments without names")

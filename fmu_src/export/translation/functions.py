@@ -8,8 +8,7 @@ from __future__ import annotations
 import ast
 import sys
 import textwrap
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from . import subset
 from .expressions import OPERATORS, Expressions, Kernel, c_name, is_simple_name
@@ -83,7 +82,7 @@ class Body(Expressions):
             if self.is_final:
                 for line in [line for line in sorted(self.comments) if line <= statement.lineno]:
                     self.write_line(f"/* {self.comments.pop(line)} */")
-            self.translate_statement(statement)
+            self.visit(statement)
 
     def translate_inner_block(self, statements: subset.Block) -> None:
         self.depth += 1
@@ -108,23 +107,16 @@ class Body(Expressions):
 
     # -- statements --
 
-    def translate_statement(self, node: ast.stmt) -> None:
-        known: Mapping[type, Callable[[Any], None]] = {
-            ast.Assign: self.translate_assignment,
-            ast.AugAssign: self.translate_augmented_assignment,
-            ast.Expr: self.translate_call_statement,
-            ast.Return: self.translate_return,
-            ast.If: self.translate_if,
-            ast.For: self.translate_for,
-            ast.While: self.translate_while,
-            ast.Break: lambda node: self.write_line("break;"),
-        }
-        if type(node) not in known:
-            line = ast.unparse(node).splitlines()[0]
-            raise self.refusal(node, line, "=, if, for, while, break, return or a call")
-        known[type(node)](node)
+    def generic_visit(self, node: ast.AST) -> None:
+        expected = "numbers, slots, + - * / and calls"
+        if isinstance(node, ast.stmt):
+            expected = "=, if, for, while, break, return or a call"
+        raise self.refusal(node, ast.unparse(node).splitlines()[0], expected)
 
-    def translate_assignment(self, node: ast.Assign) -> None:
+    def visit_Break(self, node: ast.Break) -> None:
+        self.write_line("break;")
+
+    def visit_Assign(self, node: ast.Assign) -> None:
         target = node.targets[0]
         if isinstance(target, ast.Tuple) and len(node.targets) == 1:
             self.translate_tuple_assignment(target.elts, node.value)
@@ -155,7 +147,7 @@ class Body(Expressions):
 
     def write_assignment(self, target: ast.expr, value: Value) -> None:
         if isinstance(target, ast.Subscript):
-            slot = self.translate_subscript(target).text
+            slot = self.translate_expression(target).text
             self.write_line(f"{slot} = {value.converted_to(REAL).text};")
             return
         if not isinstance(target, ast.Name):
@@ -168,7 +160,7 @@ class Body(Expressions):
         self.declared.add(name)
         self.write_line(f"{declaration}{c_name(name)} = {value.converted_to(kind).text};")
 
-    def translate_augmented_assignment(self, node: ast.AugAssign) -> None:
+    def visit_AugAssign(self, node: ast.AugAssign) -> None:
         if type(node.op) not in OPERATORS:
             raise self.refusal(node, ast.unparse(node), "+=, -=, *= or /=")
         sign = OPERATORS[type(node.op)][0]
@@ -183,12 +175,12 @@ class Body(Expressions):
         slot = self.translate_expression(node.target).text
         self.write_line(f"{slot} {sign}= {value.converted_to(REAL).text};")
 
-    def translate_call_statement(self, node: ast.Expr) -> None:
+    def visit_Expr(self, node: ast.Expr) -> None:
         if not isinstance(node.value, ast.Call):
             raise self.refusal(node, ast.unparse(node), "a call")
         self.write_line(f"{self.translate_expression(node.value).text};")
 
-    def translate_return(self, node: ast.Return) -> None:
+    def visit_Return(self, node: ast.Return) -> None:
         if node.value is None:
             self.results.append(NOTHING)
             self.write_line("return;")
@@ -198,7 +190,7 @@ class Body(Expressions):
         kind = self.unit.result if self.is_final else value.type
         self.write_line(f"return {value.converted_to(kind).text};")
 
-    def translate_if(self, node: ast.If) -> None:
+    def visit_If(self, node: ast.If) -> None:
         hint, before = self.hints.get(node.lineno, ""), self.is_rare
         test = self.translate_test(node.test).text
         self.write_line(f"if ({HINTS[hint]}({test})) {{" if hint else f"if ({test}) {{")
@@ -211,7 +203,7 @@ class Body(Expressions):
         self.write_line("}")
         self.is_rare = before
 
-    def translate_for(self, node: ast.For) -> None:
+    def visit_For(self, node: ast.For) -> None:
         loop, target = node.iter, node.target
         is_range = isinstance(loop, ast.Call) and ast.unparse(loop.func) == "range"
         ends = loop.args if is_range and isinstance(loop, ast.Call) else []
@@ -235,7 +227,7 @@ class Body(Expressions):
         self.write_line("}")
         self.declared = before
 
-    def translate_while(self, node: ast.While) -> None:
+    def visit_While(self, node: ast.While) -> None:
         (test,) = self.translate_without_variables([node.test], self.translate_test)
         self.write_line(f"while ({test.text}) {{")
         self.translate_inner_block(node.body)

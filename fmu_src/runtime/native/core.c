@@ -64,9 +64,9 @@ Status refuse(Instance *instance, const char *call, const char *reason) {
     return instance ? report_reason(instance, FAILED, call, reason) : FAILED;
 }
 
-/* Refuse with a message in which %g stands for the next of the numbers, %v for that as the variable's value, %s for the next of the texts. */
-static Status refuse_with_values(Instance *instance, const char *call, const char *format, const Variable *variable, const double *numbers,
-                          const char *const *texts) {
+/* Report a message in which %g stands for the next of the numbers, %v for that as the variable's value, %s for the next of the texts. */
+static Status report_values(Instance *instance, Status status, const char *call, const char *format, const Variable *variable, const double *numbers,
+                            const char *const *texts) {
     char text[TEXT] = "";
     for (; *format; format++) {
         char piece[2] = {*format, 0};
@@ -75,8 +75,9 @@ static Status refuse_with_values(Instance *instance, const char *call, const cha
         else if (*format == 'v') append_value(text, variable, *numbers++);
         else append(text, *texts++);
     }
-    return refuse(instance, call, text);
+    return report_reason(instance, status, call, text);
 }
+#define refuse_with_values(instance, ...) report_values(instance, FAILED, __VA_ARGS__)
 #define NUMBERS(...) (const double[]){__VA_ARGS__}
 #define TEXTS(...) (const char *const[]){__VA_ARGS__}
 
@@ -241,13 +242,9 @@ static Status refuse_step(Instance *instance, const char *call, double current, 
 
 /* Report once that a step is so short that the time stays the same; it is done all the same. */
 static Status warn_short_step(Instance *instance, const char *call, double current, double size) {
-    char text[TEXT] = "communicationStepSize = ";
-    append_number(text, size);
-    append(text, " s: too short to change the time, ");
-    append_number(text, current);
-    append(text, " s, expected a longer one; reported once");
     instance->warned = true;
-    return report_reason(instance, WARNING, call, text);
+    return report_values(instance, WARNING, call, "communicationStepSize = %g s: too short to change the time, %g s, expected a longer one; reported once",
+                         NULL, NUMBERS(size, current), NULL);
 }
 
 /* Advance with a copy of the state to go back to: a step that reaches its limit of evaluations is discarded, and a shorter one may follow. */
@@ -307,18 +304,12 @@ const Variable *find_variable(Instance *instance, const char *call, unsigned ref
     const Variable *variable = reference < VARIABLE_COUNT ? &VARIABLES[reference] : NULL;
     bool real = variable && REAL_OUTPUTS && variable->calculated;  /* so described; by its own type it can be read all the same */
     if (variable && (variable->type == type || (real && type == REAL))) return variable;
-    char text[TEXT];
-    snprintf(text, sizeof text, "valueReference = %u: ", reference);
-    if (variable) {
-        append(text, variable->name);
-        append(text, " is one of the ");
-        append(text, TYPE_NAMES[real ? REAL : variable->type]);
-        append(text, " variables, ");
-    }
-    append(text, "expected one of the ");
-    append(text, TYPE_NAMES[type]);
-    append(text, " variables in modelDescription.xml");
-    refuse(instance, call, text);
+    char number[16];
+    snprintf(number, sizeof number, "%u", reference);
+    if (variable)
+        refuse_with_values(instance, call, "valueReference = %s: %s is one of the %s variables, expected one of the %s variables in modelDescription.xml", NULL, NULL,
+                           TEXTS(number, variable->name, TYPE_NAMES[real ? REAL : variable->type], TYPE_NAMES[type]));
+    else refuse_with_values(instance, call, "valueReference = %s: expected one of the %s variables in modelDescription.xml", NULL, NULL, TEXTS(number, TYPE_NAMES[type]));
     return NULL;
 }
 

@@ -5,6 +5,8 @@ For tests in their own process, and as the module ``driver`` for programs in a f
 
 import atexit
 import ctypes
+import functools
+import itertools
 import os
 import sys
 import tempfile
@@ -26,6 +28,7 @@ STATE = (
 )
 COMMON = (*STATE, *OF_A_STEP[:3])
 messages = []  # of the call under way
+idle = {}  # FMPy's objects without an instance, by FMU: to make one it looks at every function
 
 
 class Refused(Exception):
@@ -64,26 +67,25 @@ class Fmu2:
     make = fmi2.FMU2Slave
     third = False
     home = None  # where FMUs are extracted to
-    folders = {}  # where one was extracted to,
-    descriptions = {}  # and what is known of it
     alive = []
 
-    def __init__(self, path, name="instance", logging=True, folder=None, **options):
-        path = str(path)
-        if folder is None:
-            if path not in self.folders:
-                self.folders[path] = fmpy.extract(path, tempfile.mkdtemp(dir=self.home))
-            folder = self.folders[path]
+    def __init__(self, path, name="instance", logging=True, **options):
         found = describe(path)
         self.variables = {v.name: v for v in found.modelVariables}
         scalars = [v for v in found.modelVariables if v.type != "Clock" and not v.dimensions]
         self.output_names = [v.name for v in scalars if v.causality == "output"]
-        self.fmu = self.make(
-            guid=found.guid,
-            unzipDirectory=str(folder),
-            modelIdentifier=found.coSimulation.modelIdentifier,
-            instanceName=name,
+        self.others = idle.setdefault(str(path), [])
+        self.fmu = (
+            self.others.pop()
+            if self.others
+            else self.make(
+                guid=found.guid,
+                unzipDirectory=extracted(path),
+                modelIdentifier=found.coSimulation.modelIdentifier,
+                instanceName=name,
+            )
         )
+        self.fmu.instanceName = name
         self.event_mode = options.get("event_mode", False)
         self.instantiate(logging, **options)
         self.alive.append(self)
@@ -125,8 +127,11 @@ class Fmu2:
         return self
 
     def get(self, *names):
-        kinds = [(self.variables[name].type, self.variables[name].valueReference) for name in names]
-        return [self.call("get" + kind, [reference])[0] for kind, reference in kinds]
+        """Values; of variables of one type that follow one another by one call."""
+        found, variables = [], [self.variables[name] for name in names]
+        for kind, group in itertools.groupby(variables, lambda variable: variable.type):
+            found += self.call("get" + kind, [variable.valueReference for variable in group])
+        return found
 
     def one(self, name):
         return self.get(name)[0]
@@ -192,7 +197,8 @@ class Fmu2:
     def free(self):
         if self in self.alive:
             self.alive.remove(self)
-            self.fmu.freeInstance()
+            getattr(self.fmu, f"fmi{3 if self.third else 2}FreeInstance")(self.fmu.component)
+            self.others.append(self.fmu)
 
 
 class Fmu3(Fmu2):
@@ -236,11 +242,15 @@ class Fmu3(Fmu2):
         self.fmu.enterStepMode()
 
 
+@functools.cache
 def describe(path):
-    path = str(path)
-    if path not in Fmu2.descriptions:
-        Fmu2.descriptions[path] = fmpy.read_model_description(path)
-    return Fmu2.descriptions[path]
+    return fmpy.read_model_description(str(path))
+
+
+@functools.cache
+def extracted(path):
+    """The folder that an FMU is extracted to."""
+    return fmpy.extract(str(path), tempfile.mkdtemp(dir=Fmu2.home))
 
 
 def open_fmu(path, **options):

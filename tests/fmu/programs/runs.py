@@ -4,7 +4,7 @@ import sys
 import types
 from pathlib import Path
 
-from driver import Fmu2, Refused, harmonic, open_fmu
+from driver import Refused, extracted, harmonic, open_fmu
 
 NAMES = (
     *("fmu_src", "fmu_src.runtime", "runtime", "kernels", "models", "runtime.slave"),
@@ -56,7 +56,7 @@ def host_with_modules_of_the_same_names(path):
         (Path.cwd() / (name.split(".")[-1] + ".py")).write_text("raise SystemExit('imported')")
     sys.path.insert(0, str(Path.cwd()))
     outputs = open_fmu(path).start(**harmonic(1.13)).step(200.0).outputs()
-    folder = str(Fmu2.folders[path])
+    folder = str(extracted(path))
     files = {name: str(getattr(m, "__file__", "")) for name, m in sys.modules.items()}
     new = sorted(name for name, file in files.items() if file.startswith(folder))
     return [outputs, [name for name in NAMES if sys.modules[name] is not hosts[name]], new]

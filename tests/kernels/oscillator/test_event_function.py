@@ -80,7 +80,7 @@ DRAWN = structures(clearance=True) | resonances()
 
 
 @MAKERS
-@examples(120)
+@examples(100)
 @given(DRAWN, STATES, AGES)
 @example(CRITICAL, (-0.3, 0.2, 0.5, -0.4), 1.5)
 def test_value_and_derivatives(make, values, state, age):
@@ -103,7 +103,7 @@ def derivative(signal, order):
 
 
 @MAKERS
-@examples(120)
+@examples(100)
 @given(DRAWN, STATES, AGES)
 def test_bounds_hold_as_long_as_they_are_used(make, values, state, age):
     """For ever; of growing amplitudes some spacings, or until the state is written anew."""

@@ -16,6 +16,8 @@ from .kernel import examples, flight, structures
 
 H = 0.3
 S = np.linspace(0.0, 1.0, 2001)
+TRIANGLE = np.array([[math.comb(k, i) / math.comb(5, i) for i in range(6)] for k in range(6)])
+POWERS = np.linalg.inv(TRIANGLE)  # of s, from Bernstein coefficients
 
 
 def interval(quintic, remainder=0.0):
@@ -39,16 +41,7 @@ def quintics(seed, count, spread=1.0):
 
 
 def of_bernstein(b):
-    s = Polynomial([0.0, 1.0])
-    return sum(float(c) * math.comb(5, k) * s**k * (1.0 - s) ** (5 - k) for k, c in enumerate(b))
-
-
-def part_coefficients(quintic, s):
-    """Bernstein coefficients of a quintic's part up to s, from its powers."""
-    powers = np.pad(quintic.coef, (0, 6 - len(quintic.coef))) * s ** np.arange(6)
-    return [
-        sum(math.comb(k, i) / math.comb(5, i) * powers[i] for i in range(k + 1)) for k in range(6)
-    ]
+    return Polynomial(POWERS @ b)
 
 
 def test_coefficients_of_values_and_derivatives():
@@ -82,8 +75,7 @@ def test_a_part_is_clear_where_its_coefficients_are():
     clear = 0
     for rng, quintic, b in quintics(2, 1000):
         s = float(rng.uniform(0.05, 1.0))
-        part = part_coefficients(quintic, s)
-        lowest = min(part)
+        lowest = (TRIANGLE @ (quintic.coef * s ** np.arange(6))).min()  # of the part up to s
         if abs(lowest) > 1e-12:
             assert hermite.is_part_clear(*b, s) == (lowest >= 0.0)
             clear += lowest >= 0.0

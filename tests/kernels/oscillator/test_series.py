@@ -73,7 +73,7 @@ def test_a_short_flight_is_that_of_the_gap(values, x, v, slope):
             assert abs(v1 - speed(tau)) <= 1e-14 * size
             assert values["clearance"] or abs(x1 - first(tau)) <= 1e-15  # counted from rest else
         assert abs(gap(mp.mpf(end))) <= 1e-13 * (slope + terms * end) * end + 4.0 * start
-        assert all(gap(mp.mpf(end) * i / 64) > -start for i in range(1, 64))
+        assert all(gap(mp.mpf(end) * i / 16) > -start for i in range(1, 16))
         fifth = curvature.derivative().derivative().derivative()
         reach = 0.3 / m[at.RATE]
         largest = max(abs(fifth(mp.mpf(reach * i / 8))) for i in range(9))

@@ -1,7 +1,7 @@
 """One function of a program, called in a process that has no project on its path.
 
-Run as ``python fresh_process.py FOLDER MODULE FUNCTION`` with the arguments as JSON on the standard
-input; prints the answer as JSON. Floats survive to the last bit.
+Run as ``python fresh_process.py MODULE FUNCTION`` with the arguments as JSON on the standard input;
+prints the answer as JSON. Floats survive to the last bit.
 
 Run as ``python fresh_process.py`` it forks such a process for each line of JSON on the standard
 input. What most programs import is imported once, before the forks; no FMU is ever opened there.
@@ -22,21 +22,6 @@ def is_ours(place):
     """Whether a folder on the path is this project, or the tests themselves."""
     folder = Path(place or ".").resolve()
     return folder == HERE or (folder / "fmu_src").is_dir()
-
-
-def leave_the_project():
-    sys.path[:] = [place for place in sys.path if not is_ours(place)]
-    try:
-        import_module("fmu_src")
-        raise SystemExit("the project is on the path")
-    except ModuleNotFoundError:
-        pass
-
-
-def main(folder, module, function, arguments):
-    sys.path.insert(0, folder)
-    answer = getattr(import_module(module), function)(*arguments)
-    print("ANSWER " + json.dumps(answer))
 
 
 def become(request):
@@ -64,11 +49,17 @@ def serve():
         print(child, flush=True)
         _, status = os.waitpid(child, 0)
         print(os.waitstatus_to_exitcode(status), flush=True)
-    return None
+    sys.exit()
 
 
 if __name__ == "__main__":
-    leave_the_project()
-    call = [*sys.argv[1:], json.load(sys.stdin)] if len(sys.argv) > 1 else serve()
-    if call:
-        main(*call)
+    sys.path[:] = [str(HERE / "programs"), *(place for place in sys.path if not is_ours(place))]
+    try:
+        import_module("fmu_src")
+        raise SystemExit("the project is on the path")
+    except ModuleNotFoundError:
+        pass
+    module, function, arguments = (
+        [*sys.argv[1:], json.load(sys.stdin)] if len(sys.argv) > 1 else serve()
+    )
+    print("ANSWER " + json.dumps(getattr(import_module(module), function)(*arguments)))
