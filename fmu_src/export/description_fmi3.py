@@ -58,7 +58,8 @@ def add_array(parent: ET.Element, model: Model, array: Array, reference: int) ->
 
 def add_model_structure(root: ET.Element, model: Model) -> None:
     structure = ET.SubElement(root, "ModelStructure")
-    calculated = [(v.slot, (v,)) for v in model.variables if v.causality == "output"]
+    outputs = [v for v in model.variables if v.causality == "output"]
+    calculated: list[tuple[int, tuple[Variable, ...]]] = [(v.slot, (v,)) for v in outputs]
     for i, array in enumerate(model.arrays):
         members = array_elements(model, array)
         if members[0].causality == "output":

@@ -1,3 +1,1 @@
-"""The exported FMU as its users meet it: by FMI calls, in a fresh process without the project where
-that matters.
-"""
+"""The exported FMU as its users meet it, in a process without the project where that matters."""

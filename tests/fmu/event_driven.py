@@ -82,9 +82,7 @@ class Motion:
         self.shaking = p["box_amplitude"] * p["box_frequency"] ** 2
 
     def part_or_stay(self):
-        """Touching with one velocity: whether the masses part, by the sign of the acceleration
-        that would part them; where it is zero, of what it is after a moment of contact.
-        """
+        """Touching with one velocity: whether the masses part, now or a moment later."""
         soon, pull = 0.02 * self.longest, self.opening(self.time, *self.state[:2])
         if abs(pull) <= 1e-14 * self.own**2 * self.size:
             ends = self.time, self.time + soon

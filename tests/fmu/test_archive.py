@@ -1,6 +1,4 @@
-"""The FMU as a file: reproducible, named by its contents, valid, complete, and without a trace of
-the machine that made it.
-"""
+"""The FMU as a file: valid, complete, and without a trace of the machine that made it."""
 
 import re
 import sys
@@ -79,9 +77,7 @@ def test_no_path_of_the_machine_is_inside(fmu):
 
 @pytest.mark.parametrize("drive", ["MotorShaker", "ElectrodynamicShaker"])
 def test_terminals_of_both_models_fit_together(exported, drive):
-    """Members of the same name: an output here, an input of the same unit there. The structure has
-    more, which FMI's matching rule "bus" allows: what another drive may have.
-    """
+    """An output here, an input of the same unit there; the structure has more, for others."""
     sides = []
     for name in ("TwoMassImpactOscillator", drive):
         path = exported / "fmi3" / f"{name}.fmu"

@@ -1,6 +1,4 @@
-"""Every mistake gives a status and a message, and nothing else suffers: not the process, not the
-instance, not another one.
-"""
+"""Every mistake gives a status and a message, and no instance suffers, nor the process."""
 
 import math
 from functools import partial

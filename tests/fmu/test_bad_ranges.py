@@ -48,9 +48,7 @@ def try_range(f, variable):
 
 @models
 def test_every_range_holds(model, form):
-    """NaN, infinities and the numbers next to the ends are refused, the ends themselves are not;
-    before and after initialisation.
-    """
+    """NaN, infinities and numbers next to the ends are refused, the ends are not; at any time."""
     path = path_of(model, form)
     f, problems = open_fmu(path), []
     settable = [v for v in f.variables.values() if v.causality in ("parameter", "input")]
@@ -97,9 +95,7 @@ def test_a_refused_step_leaves_the_instance_where_it_was(fmu):
 
 @models
 def test_a_run_of_divided_steps_comes_to_the_same_end(model, form):
-    """Through chattering, or limits: whatever was discarded has left no trace. The motor's formula
-    has 12 evaluations a sub-step, which begins anew with each step.
-    """
+    """Through chattering, or limits. A motor's sub-step has 12 evaluations, and begins anew."""
     limit, least, most_allowed = (40, 1, 48) if model == "MotorShaker" else (9, 11, 8)
     (values, end), path = EVALUATION_RUNS[model], path_of(model, form)
     free = open_fmu(path).start(**values).step(end).motion()
@@ -149,9 +145,7 @@ def test_starts_that_cannot_be_are_refused(fmu, values, words):
 
 @pytest.mark.parametrize("steps", [7, 10, 49, 1000])
 def test_no_step_goes_past_the_stop_time(fmu, steps):
-    """FMI 2.0.5 (fmi2SetupExperiment) and 3.0.2 (fmi3EnterInitializationMode): an error. A tenth,
-    ten times, is not one: the importer's rounding is no step past the end.
-    """
+    """An error, by FMI 2.0.5 and 3.0.2; the importer's rounding is no step past the end."""
     f = open_fmu(fmu)
     f.enter(0.0, stopTime=3.0)
     f.leave()

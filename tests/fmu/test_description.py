@@ -263,9 +263,7 @@ def test_all_forms_state_the_same_dependencies(model):
 @models
 @moving
 def test_dependencies_between_steps_are_true(model, form):
-    """One input in turn is set to another value, the others to what they are: an oscillator's
-    outputs wait for the next step, a drive's move at once where they name it.
-    """
+    """An oscillator's outputs wait for the next step, a drive's move at once where they name it."""
     path, found = path_of(model, form), set()
     for start in STARTS[model]:
         f = open_fmu(path).start(**start).step(0.01)

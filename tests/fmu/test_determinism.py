@@ -1,6 +1,4 @@
-"""The same bits again: two instances, two processes, a saved and restored state, the compiled
-kernel and its Python source.
-"""
+"""The same bits again, in two processes, and from a saved and restored state."""
 
 import pytest
 
@@ -39,9 +37,7 @@ def test_two_processes(fmu, tmp_path):
 
 @pytest.mark.parametrize("name", CASES)
 def test_state_is_saved_and_restored_in_one_process(fmu, name):
-    """Back and forth in flight and in contact, in the same and in another instance, at several
-    depths; a state can be set more than once.
-    """
+    """Back and forth in flight and in contact, in this and in another instance, more than once."""
     values, end = CASES[name], 400.0
     lone = open_fmu(fmu).start(**values).step(end).motion()
     assert lone["impact_count"] > 50

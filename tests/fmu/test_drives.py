@@ -1,6 +1,4 @@
-"""``MotorShaker`` and ``ElectrodynamicShaker`` in all their forms: the same bits, states that
-resume, the motion of the equations, inputs that are seen at once, and mistakes that are named.
-"""
+"""The drives in all forms: bits, states, motion by the equations, inputs seen at once, mistakes."""
 
 import numpy as np
 import pytest
@@ -57,11 +55,11 @@ def test_states_resume_with_the_same_bits_in_all_forms(model):
 
 
 @pytest.mark.parametrize("inductance", [0.0, 0.05])
-def test_a_motor_turns_by_the_equations(form, inductance):
+def test_a_motor_turns_by_the_equations(inductance):
     """In steps too, over which the force runs on; its energy is kept."""
     values = {"voltage": 8.0, "armature_inductance": inductance}
     values |= {"box_force": 2.0, "box_force_1": 30.0, "box_force_2": -500.0, "box_force_3": 1e4}
-    f, whole = (open_fmu(path_of(MOTOR, form)).start(**values) for _ in range(2))
+    f, whole = (open_fmu(path_of(MOTOR, form)).start(**values) for form in ("fmi2", "fmi3"))
     expected = solve(values, (0.0,) * 5, 0.25)
     names = ("box_position", "box_velocity", "angle", "speed", "motor_energy", "box_acceleration")
     found = whole.step(0.25).get(*names)
@@ -73,9 +71,7 @@ def test_a_motor_turns_by_the_equations(form, inductance):
 
 
 def draw_coil(seed):
-    """Random values of a shaker: voltage or current control, with and without inductance, no limit,
-    one or both, cubic command and force over a second, start values.
-    """
+    """Random values of a shaker: kind of control, inductance, limits, cubics, start values."""
     rng = np.random.default_rng(seed)
     lags, commanded, voltage, current = (bool(seed >> bit & 1) for bit in range(4))
     values = {
@@ -132,14 +128,12 @@ def test_a_coils_bits_and_energy_on_any_grid(kind):
 
 @pytest.mark.parametrize("lags", [0.0, 0.02])
 @pytest.mark.parametrize("commanded", [False, True])
-def test_limits_of_a_coil_are_kept_and_told(form, commanded, lags):
-    """The commanded quantity, and the other one too where the table does not drive the coil beyond
-    it; ``limited`` says so.
-    """
+def test_limits_of_a_coil_are_kept_and_told(commanded, lags):
+    """The commanded quantity, and the other one unless the table drives the coil beyond it."""
     limits, seen = np.array([3.0, 0.5]), set()
     values = {"voltage_limit": 3.0, "current_limit": 0.5, "coil_inductance": lags}
     values |= {"command": 0.3, "command_1": 4.0, "command_2": -40.0, "command_3": 70.0}
-    f = open_fmu(path_of(COIL, form)).start(**values, current_control=commanded)
+    f = open_fmu(path_of(COIL, "fmi2")).start(**values, current_control=commanded)
     for k in range(1, 401):
         parts = np.abs(f.step(k / 200).get("voltage", "current")) / limits
         assert (parts <= 1.0 + 1e-12).all()
@@ -160,9 +154,7 @@ def test_each_cubic_of_a_coil_begins_where_its_own_inputs_are_set():
 
 
 def test_no_event_of_a_coil_is_missed():
-    """A command that is a ten millionth beyond its limit for 0.6 ms, at its limit or just beyond,
-    and a stop that a free table reaches by a millionth of a millimetre, in long steps.
-    """
+    """A command just beyond its limit for 0.6 ms, a stop reached by a nanometre, in long steps."""
     path = path_of(COIL, "fmi3")
     for command in (2.0, 2.0 + 1e-12, -2.0, 2.0 - 1e-12):
         f = open_fmu(path).start(command=command, voltage_limit=2.0)
@@ -195,9 +187,7 @@ def test_a_commanded_current_puts_the_energy_of_its_first_jump_in(form):
 
 @drives
 def test_acceleration_belongs_to_the_inputs_as_set_now(model, form):
-    """In initialisation mode and between steps, after a state was restored too; reading it changes
-    nothing.
-    """
+    """In initialisation mode, between steps, after a state was restored; reading is harmless."""
     name = "voltage" if model == MOTOR else "command"
     f = open_fmu(path_of(model, form))
     f.enter()

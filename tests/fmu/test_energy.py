@@ -1,6 +1,4 @@
-"""The energy balance, from outputs alone: kinetic and elastic energy, work of the box, losses in
-dampers and impacts.
-"""
+"""The energy balance, from outputs: kinetic and elastic energy, work, losses."""
 
 import itertools
 import math
@@ -28,9 +26,7 @@ def energy(m1, m2, k1, k2, x1, x2, v1, v2):
     ],
 )
 def test_energy_balance_of_driven_motion_closes(fmu, clearance, gamma, e_slope, more):
-    """Work and damping losses by Gauss quadrature between impacts, through chaotic motion; its
-    error is below 1e-12.
-    """
+    """By Gauss quadrature between impacts, through chaotic motion; its error is below 1e-12."""
     values = {"m1": 1.0, "m2": 1.5, "k1": 1.0, "k2": 1.4, "d1": 0.02, "d2": 0.03, "e": 0.7}
     values |= {"box_amplitude": 0.8, "box_frequency": 1.13}
     values |= {"clearance": clearance, "gamma": gamma, "e_slope": e_slope, **more}

@@ -143,9 +143,7 @@ def test_what_enters_through_forces_is_in_the_momentum(fmu, more):
 @pytest.mark.parametrize("more", [{}, {"wall": True}, FORCES])
 @pytest.mark.parametrize("e", [0.0, 0.6])
 def test_both_ends_of_a_play(fmu, e, more):
-    """The gap stays between them, the sides say which one; steps know their largest gap, and
-    masses stay together at either end.
-    """
+    """The gap stays between them, steps know the largest one, and masses stay at either end."""
     values = {**harmonic(0.7), **more, "e": e, "stroke": 1.0, "clearance": 0.3, "d1": 0.1}
     f, sides, count = open_fmu(fmu).start(**values), [set(), set()], 0
     for k in range(1, 1500):
@@ -178,9 +176,7 @@ def test_a_start_at_the_outer_end(fmu):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_peaks_are_those_of_a_dense_look(fmu, kind):
-    """Displacements, accelerations in space between impacts, and the gap; the largest gap and the
-    impulse of many short steps are those of one.
-    """
+    """The largest gap and the impulse of many short steps are those of one, too."""
     values = drawn(kind, 7, 3)[0]
     dense, whole = (open_fmu(fmu).start(**values, peaks_on=on) for on in (False, True))
     motion, names = Motion(values), ("x1_max", "x2_max", "a1_max", "a2_max", "x_rel_max")

@@ -48,9 +48,7 @@ def grids(end):
     ],
 )
 def test_communication_grid_does_not_matter(fmu, eta, more):
-    """At eta = 1.13 the motion is chaotic: a difference in the last bit would have grown to one in
-    the first digits.
-    """
+    """At eta = 1.13 the motion is chaotic: a difference in the last bit would have grown."""
     found = {}
     for name, times in grids(512.0).items():
         with open_fmu(fmu) as f:
@@ -64,9 +62,7 @@ def test_communication_grid_does_not_matter(fmu, eta, more):
     ("clearance", "stroke"), [(0.0, 0.0), (0.25, 0.0), (-0.25, 0.0), (0.25, 0.75)]
 )
 def test_communication_grid_does_not_matter_after_inputs_changed(fmu, clearance, stroke):
-    """The same with inputs that change at common points of time, a constant acceleration among
-    them.
-    """
+    """The inputs change at common points of time, a constant acceleration among them."""
     changes = [
         (0.0, {"box_frequency": 1.13}),
         (20.0, {"box_amplitude": 0.5}),
@@ -88,9 +84,7 @@ def test_communication_grid_does_not_matter_after_inputs_changed(fmu, clearance,
 
 
 def test_cubic_inputs_run_on_over_steps(fmu):
-    """Until one of them is set, to whatever value; after a restored state too. In the middle the
-    jerk is set to the value that it has, before the state was saved or after it was restored.
-    """
+    """Until one is set, to whatever value; before or after a state was saved and restored."""
     found = []
     for pieces in (1, 7, 256):
         f = open_fmu(fmu).start(**harmonic(1.13), **CUBIC)
@@ -117,9 +111,7 @@ def test_cubic_inputs_run_on_over_steps(fmu):
     ],
 )
 def test_amplitudes_scale_to_the_last_bit(fmu, clearance, e_slope, forces, wall):
-    """Displacements, velocities and forces times 2^n, energies times 4^n, times over length times
-    2^-n; times, counts and the paper's xi as they were.
-    """
+    """Displacements times 2^n, energies times 4^n, times over length times 2^-n, else the same."""
     lengths = {"x1_start": -0.375, "x2_start": 0.8125, "clearance": clearance}
     lengths |= {"v1_start": 0.1, "v2_start": -0.3, "box_amplitude": 0.7, **forces}
     if wall:
@@ -147,9 +139,7 @@ def test_amplitudes_scale_to_the_last_bit(fmu, clearance, e_slope, forces, wall)
     ("clearance", "wall"), [(0.0, False), (0.3, False), (-0.3, False), (-0.3, True), (0.2, True)]
 )
 def test_masses_never_pass_through_each_other(fmu, clearance, wall):
-    """x_rel >= 0 at dense and random points, and within a few roundings of every impact, where it
-    is as small as it gets.
-    """
+    """At dense and random points, and within a few roundings of every impact."""
     rng, gaps, near = random.Random(2), [], []
     for eta, more in ((0.4, {}), (1.13, {"m2": 3.0}), (2.9, {"e": 0.1}), (0.4, {"e": 0.0})):
         values = {**harmonic(eta), **more, "clearance": clearance, "wall": wall}

@@ -1,6 +1,4 @@
-"""Importers with readers and loops of their own run the FMU and agree: FMPy's function and command
-line, libcosim, fmuloader and ecos; and another checker reads it.
-"""
+"""Importers with readers and loops of their own run the FMU and agree; another checker reads it."""
 
 import subprocess
 import sys
@@ -48,9 +46,7 @@ def test_simulate_fmu(fmu, reference):
     ],
 )
 def test_another_importer_gets_the_same_bits(importer, form, tmp_path, reference):
-    """Other readers of the XML, ways to the binary and loops: with nanoseconds for a clock, the
-    stop time told, or steps that are added up.
-    """
+    """Their clocks count nanoseconds, or add up steps; one is told the stop time."""
     if not find_spec(importer):
         pytest.skip(f"{importer} is not installed")
     arguments = FMUS[form], VALUES, NAMES[:-1], STEP, COUNT

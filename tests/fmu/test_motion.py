@@ -1,6 +1,4 @@
-"""Starts, gaps and preloads, inputs that are told in pieces, near misses: what random motions
-(:mod:`.test_forces`) leave open.
-"""
+"""Starts, gaps, preloads and near misses: what random motions (:mod:`.test_forces`) leave open."""
 
 import math
 
@@ -38,9 +36,7 @@ def structure(seed):
     [(0.25, 0.0, 0.0, 0.25, 0.0), (-0.25, -0.2, 0.05, 0.0, 0.2)],
 )
 def test_at_rest_until_it_is_driven(fmu, clearance, x1, x2, gap, force):
-    """With k1 = 1, k2 = 4: F = 0.25 * 4/5, x1 = -F/k1, x2 = F/k2; over a time in which no step is
-    too long.
-    """
+    """F = 0.25 * 4/5, x1 = -F/k1, x2 = F/k2; over a time in which no step is too long."""
     f = open_fmu(fmu).start(k1=1.0, k2=4.0, clearance=clearance, box_amplitude=0.0)
     for time in (0.0, 1.0, 1e12):
         row = f.step(time).get("x1", "x2", "x_rel", "contact_force", "box_force")
@@ -71,9 +67,7 @@ def test_bonded_ignores_the_clearance(fmu):
 
 @pytest.mark.parametrize("clearance", [1e6, -1e6])
 def test_a_motion_small_against_the_clearance_keeps_its_digits(fmu, clearance):
-    """A million times larger than the box's motion: the faces never part, or never meet, and the
-    motion is the linear one to all its digits, over inputs that are set at each step.
-    """
+    """The faces never part, or never meet: the motion is the linear one, to all its digits."""
     values = {"d1": 0.5, "d2": 0.6, "box_frequency": 1.5, "clearance": clearance}
     other = {**values, "clearance": 0.0, "bonded": clearance < 0.0, "x2_start": 0.0}
     if clearance > 0.0:  # as far apart, without a clearance: mass 1 alone
@@ -90,9 +84,7 @@ def test_a_motion_small_against_the_clearance_keeps_its_digits(fmu, clearance):
 
 @pytest.mark.parametrize("damping", [0.01, 0.0])
 def test_phase_is_continuous_when_the_frequency_changes(fmu, damping):
-    """The phase is the integral of box_frequency, from phase_start on; positions and velocities do
-    not jump either, on the way to a resonance and away from it.
-    """
+    """The integral of box_frequency; nothing jumps on the way to a resonance and away from it."""
     f = open_fmu(fmu).start(phase_start=-1.0, box_frequency=0.4, d1=damping, d2=damping)
     phase = -1.0
     for number, frequency in enumerate((0.4, 3.0, 0.0, 1.0, 1e3, 1.0, 0.7, 0.7), 1):
@@ -119,9 +111,7 @@ def first_minimum(gap):
 
 
 def grazing_start(values, state, depth):
-    """x2 at the start for which the gap's first minimum is ``depth``, by Newton's method; and the
-    time of that minimum.
-    """
+    """x2 at the start for a first minimum of the gap at ``depth``, by Newton's method; and when."""
     x2 = mp.mpf(state[2])
     for _ in range(7):
         gap, nearby = (gap_of(x2 + shift, values, state) for shift in (0, mp.mpf("1e-20")))
@@ -139,9 +129,7 @@ GRAZES = [
 
 @pytest.mark.parametrize("values", GRAZES)
 def test_a_driven_near_miss_and_a_graze(fmu, values):
-    """The gap's first minimum lies 1e-8 above or below nothing, by high precision: not one impact
-    is made up, and none is missed, by a step that ends behind it or long after.
-    """
+    """The first minimum lies 1e-8 above or below nothing: no impact is made up, none is missed."""
     values, state = {"k2": 3.0, **values}, (-2.0, 0.5, -1.6, -0.8)
     for depth in (1e-8, -1e-8):
         x2, bottom = grazing_start(values, state, depth)

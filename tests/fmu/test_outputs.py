@@ -12,9 +12,7 @@ VALUES |= {"box_amplitude": 0.7, "box_frequency": 0.6}
 
 
 def test_outputs_follow_their_definitions(fmu):
-    """Differences, the paper's xi, force on the box, compressive force, phase: in flight and in
-    contact.
-    """
+    """In flight and in contact."""
     f = open_fmu(fmu).start(phase_start=1.0, **VALUES)
     rows = [{"time": f.step(k / 16).time, **f.outputs()} for k in range(1, 1000)]
     m1, m2, k1, k2, d1, d2, e, a, frequency = VALUES.values()

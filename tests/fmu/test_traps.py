@@ -34,9 +34,7 @@ def export_other_version(folder):
 
 
 def test_two_versions_in_one_process_do_not_share_code(tmp_path):
-    """Same model, script and class names: each has its own defaults and numbers, in whatever order
-    they come, and its own states.
-    """
+    """Each has its own defaults, numbers and states, in whatever order they come."""
     changed = export_other_version(tmp_path)
 
     def numbers(path):
@@ -53,9 +51,7 @@ def test_two_versions_in_one_process_do_not_share_code(tmp_path):
 
 
 def test_host_with_modules_of_the_same_names(tmp_path):
-    """An importer that is itself written in Python, and has modules named as ours are, keeps them;
-    the FMU does not get them.
-    """
+    """An importer in Python keeps modules that are named as ours are; the FMU does not get them."""
     outputs, replaced, new = run("runs.host_with_modules_of_the_same_names", PYTHON, cwd=tmp_path)
     assert outputs == open_fmu(PYTHON).start(**harmonic(1.13)).step(200.0).outputs()
     assert replaced == []

@@ -1,5 +1,6 @@
 """The FMUs, and importers compiled for them once a session."""
 
+import functools
 import sys
 from types import SimpleNamespace
 
@@ -8,7 +9,7 @@ import pytest
 from fmu_src.export import compiler
 from tests import importers
 
-from ..fmu.driver import FMUS, VERSIONS
+from ..fmu.driver import FMUS, OSCILLATOR, VERSIONS, path_of
 
 
 @pytest.fixture(scope="session")
@@ -21,9 +22,7 @@ def fmus(exported):
 
 @pytest.fixture
 def hide(monkeypatch):
-    """A function that takes a C compiler away from the exporter: ``"ziglang"``, or ``"own"``, the
-    machine's.
-    """
+    """A function that hides ``"ziglang"``, or ``"own"``, the machine's C compiler."""
     compiler.warn_once.cache_clear()
 
     def away(*names):
@@ -39,16 +38,14 @@ def hide(monkeypatch):
 
 @pytest.fixture(scope="session")
 def importer_of(fmus, tmp_path_factory):
-    """A function from FMI version to the compiled importer with the FMU's own binary."""
-    made = {}
+    """A function from FMI version and model to the compiled importer with the FMU's binary."""
     if sys.platform != "linux" or not importers.c_compiler():
         pytest.skip("the importers are compiled and run on Linux")
 
-    def make(version):
-        if version not in made:
-            folder = tmp_path_factory.mktemp(version)
-            made[version] = importers.importer(version, fmus[version], folder)
-        return made[version]
+    @functools.cache
+    def make(version, model=OSCILLATOR):
+        path = path_of(model, version)
+        return importers.importer(version, path, tmp_path_factory.mktemp(version))
 
     return make
 

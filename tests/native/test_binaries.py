@@ -1,6 +1,4 @@
-"""What is in the binaries: FMI functions and the kernel, nothing else; the same bytes each time;
-the Windows one runs the same.
-"""
+"""What is in the binaries: FMI functions and the kernel, nothing else; Windows' one runs alike."""
 
 import os
 import re

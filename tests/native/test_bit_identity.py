@@ -1,6 +1,4 @@
-"""Pure Python, its compiled form, native FMI 2.0 and native FMI 3.0 give the same bits, each in a
-process of its own, through chaos.
-"""
+"""All forms give the same bits, each in a process of its own, through chaos."""
 
 import pytest
 
@@ -16,9 +14,7 @@ def run(fmu, folder, end, count, values, **options):
 
 @pytest.mark.parametrize("eta", ordinary([1.13, 2.9]))
 def test_same_bits_in_every_form(fmus, tmp_path, eta):
-    """More than 1,000 impacts: were the last bit different once, the numbers would soon have
-    nothing in common.
-    """
+    """Were the last bit different once, the numbers would soon have nothing in common."""
     values, end = {**harmonic(eta), "e": 0.7, "d1": 0.01, "d2": 0.01}, 6144.0
     pure = run(fmus["fmi2-python"], tmp_path / "pure", end, 64, values, pure=True)
     forms = {form: run(fmus[form], tmp_path / form, end, 64, values) for form in fmus}

@@ -1,6 +1,4 @@
-"""FMI 3.0 event mode: the clock ticks at every impact, at its exact time, and nowhere else; the
-trajectory stays what it is.
-"""
+"""Event mode: the clock ticks at every impact, at its time; the trajectory stays what it is."""
 
 import math
 
@@ -51,9 +49,7 @@ def test_times_by_the_clock_are_impact_times_of_small_steps(fmus, values, end):
 
 
 def test_an_ignored_tick_is_gone_after_the_next_step(fmus):
-    """An importer need not handle the event; and leaving event mode without an update ends the tick
-    too.
-    """
+    """The event need not be handled; leaving event mode without an update ends the tick too."""
     with open_fmu(fmus["fmi3"], event_mode=True) as fmu:
         fmu.start(**CHAOS)
         assert fmu.go(20.0) == (True, False)
@@ -114,9 +110,7 @@ def test_saving_in_event_mode_saves_the_tick(fmus):
 
 @pytest.mark.parametrize("scale", [1.0, 1.7], ids=["omega=1", "omega=1.7"])
 def test_time_does_not_run_backwards_next_to_an_impact(fmus, scale):
-    """Communication points a few units in the last place around each impact: every step ends at or
-    after its beginning.
-    """
+    """Communication points a few units in the last place around each impact."""
     values = {**CHAOS, "k1": scale**2, "k2": 1.2 * scale**2, "box_frequency": 1.13 * scale}
     values |= {"d1": 0.01 * scale, "d2": 0.01 * scale}
     with open_fmu(fmus["fmi3"], **EARLY) as fmu:

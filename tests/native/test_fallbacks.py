@@ -31,9 +31,7 @@ def binaries(fmu):
 
 
 def same_run(fmu, other, tmp_path):
-    """Whether two FMUs go the same way; and the files of a compiled kernel in the first one's
-    process.
-    """
+    """Whether two FMUs go the same way; files of a compiled kernel in the first one's process."""
     found = run(fmu, tmp_path / "a", 64.0, 4, harmonic(1.13))
     expected = run(other, tmp_path / "b", 64.0, 4, harmonic(1.13))
     compiled = [path for path in found["mapped"] if "kernel-" in path]

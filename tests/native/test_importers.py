@@ -1,6 +1,4 @@
-"""The native FMUs through the project's own importer in C: FMPy's numbers, many instances, threads,
-calls that nobody would think of, and every byte accounted for.
-"""
+"""The native FMUs through the importer in C: numbers, instances, threads, calls in any order."""
 
 import random
 import re
@@ -12,7 +10,7 @@ import pytest
 
 from tests import importers
 
-from ..fmu.driver import PAIRS, path_of
+from ..fmu.driver import PAIRS
 from ..fmu.programs.driver import COMMON, harmonic, open_fmu
 from ..sparing import ordinary
 
@@ -64,11 +62,8 @@ def test_a_thousand_instances_and_four_threads(importer):
 
 
 @pytest.fixture(scope="module", params=ordinary(PAIRS, PAIRS[3:4]), ids="-".join)
-def importer_of_model(request, fmus, tmp_path_factory):
-    version, model = request.param
-    if not importers.own_compiler_command():
-        pytest.skip("there is no C compiler")
-    return importers.importer(version, path_of(model, version), tmp_path_factory.mktemp("model"))
+def importer_of_model(request, importer_of):
+    return importer_of(*request.param)
 
 
 def seeds(version):
@@ -78,9 +73,7 @@ def seeds(version):
 
 @pytest.mark.parametrize("every", ordinary([5, 1]))
 def test_calls_in_any_order_are_survived(importer_of_model, every):
-    """Drawn at random, and the fuzzer's kept inputs, in the FMU's own binary; each that is refused
-    has a message.
-    """
+    """Drawn at random, and the fuzzer's kept inputs; each that is refused has a message."""
     count = 300 // every
     done = importer_of_model.run("random", 7, count)
     assert int(re.search(r"CHECKS (\d+) FAILURES 0", done.stdout).group(1)) > 7 * count

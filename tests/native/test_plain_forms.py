@@ -23,9 +23,7 @@ def plain(version, tmp_path):
 
 
 def test_an_importer_that_knows_real_alone_runs_a_plain_form(plain, fmus, version):
-    """It writes 0 to all inputs, which stops no harmonic excitation, and reads all outputs as
-    Real: the numbers of the full form. That form's own types can still be read.
-    """
+    """It writes 0 to all inputs, and reads all outputs as Real; their own types can be read too."""
     assert validate_fmu(str(plain)) == []
     with open_fmu(plain) as fmu, open_fmu(fmus[version]) as full:
         inputs = [v.name for v in fmu.variables.values() if v.causality == "input"]

@@ -119,9 +119,7 @@ def test_symmetric_orbit_between_two_rigid_stops():
 
 
 def test_falling_ball_bounces_in_a_geometric_series():
-    """e = 0.5: bounce n comes ``2 (1 - e^n)/(1 - e) - 1`` falling times after the start, after
-    three falling times it is at rest.
-    """
+    """Bounce n comes ``2 (1 - e^n)/(1 - e) - 1`` falling times after the start, e = 0.5."""
     ball = Structure.one_mass(m=2.0, k=1e-9, d=0.0, e=0.5, clearance=0.0, gamma=1e-9)
     start, fall = (-1.0, 0.0, 0.0, 0.0), math.sqrt(2.0 / 9.81)
     motion = simulate(

@@ -14,7 +14,7 @@ EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
 SIZE = re.compile(r"(\d+) bytes \((\w+)")
 INDIRECT = "__indirect_call"
 # what makes a message; no step that is long enough to change the time and succeeds goes through it
-MESSAGES = ("report_reason", "refuse", "refuse_step", "warn_short_step", "format_message", "append")
+MESSAGES = ("report_values", "refuse", "refuse_step", "warn_short_step", "format_message", "append")
 CALLS = {  # FMI 3.0's, by what they are for
     "a step": "fmi3DoStep",
     "outputs": "fmi3GetFloat64",
@@ -32,14 +32,12 @@ class CallGraph:
     sizes: dict[str, int]
     called: dict[str, set[str]]
 
-    def stack_bytes(
-        self, function: str, without: tuple[str, ...] = (), path: tuple[str, ...] = ()
-    ) -> int:
+    def stack_bytes(self, function: str, path: tuple[str, ...] = ()) -> int:
         """Return the stack bytes of a call, without the C library's; raise if it is in its path."""
         if function in path:
             raise RecursionError(" -> ".join([*path, function]))
-        called = [one for one in self.called.get(function, ()) if plain_name(one) not in without]
-        inner = (self.stack_bytes(other, without, (*path, function)) for other in called)
+        called = self.called.get(function, ())
+        inner = (self.stack_bytes(other, (*path, function)) for other in called)
         return self.sizes.get(function, 0) + max(inner, default=0)
 
     def library_functions(self, function: str, without: tuple[str, ...] = ()) -> set[str]:

@@ -50,24 +50,12 @@ static void append_value(char *text, const Variable *variable, double value) {
     else append_number(text, value);
 }
 
-/* Report why a call is not done. */
-static Status report_reason(Instance *instance, Status status, const char *call, const char *reason) {
-    char text[TEXT] = "";
-    append(text, call);
-    append(text, ": ");
-    append(text, reason);
-    instance->report(instance, status, text);
-    return status;
-}
-
-Status refuse(Instance *instance, const char *call, const char *reason) {
-    return instance ? report_reason(instance, FAILED, call, reason) : FAILED;
-}
-
-/* Report a message in which %g stands for the next of the numbers, %v for that as the variable's value, %s for the next of the texts. */
+/* Report of a call what has %g for the next of the numbers, %v for that as the variable's value, %s for the next of the texts. */
 static Status report_values(Instance *instance, Status status, const char *call, const char *format, const Variable *variable, const double *numbers,
                             const char *const *texts) {
     char text[TEXT] = "";
+    append(text, call);
+    append(text, ": ");
     for (; *format; format++) {
         char piece[2] = {*format, 0};
         if (*format != '%') append(text, piece);
@@ -75,22 +63,30 @@ static Status report_values(Instance *instance, Status status, const char *call,
         else if (*format == 'v') append_value(text, variable, *numbers++);
         else append(text, *texts++);
     }
-    return report_reason(instance, status, call, text);
+    instance->report(instance, status, text);
+    return status;
 }
 #define refuse_with_values(instance, ...) report_values(instance, FAILED, __VA_ARGS__)
 #define NUMBERS(...) (const double[]){__VA_ARGS__}
 #define TEXTS(...) (const char *const[]){__VA_ARGS__}
 
+Status refuse(Instance *instance, const char *call, const char *reason) {
+    return instance ? refuse_with_values(instance, call, "%s", NULL, NULL, &reason) : FAILED;
+}
+
 bool require_phase(Instance *instance, const char *call, int phases) {
     static const char *const names[] = {"instantiated", "initialization mode", "step mode", "event mode", "stopped after an error", "terminated"};
     if (!instance) return false;
     if (instance->state.phase & phases) return true;
-    char text[TEXT] = "called when ";
-    for (int i = 0; i < 6; i++) if (instance->state.phase == 1 << i) append(text, names[i]);
-    append(text, ": expected when ");
-    const char *separator = "";
-    for (int i = 0; i < 6; i++) if (phases & 1 << i) { append(text, separator); append(text, names[i]); separator = ", "; }
-    refuse(instance, call, text);
+    const char *texts[13] = {""}, **next = texts + 1, *separator = "";
+    for (int i = 0; i < 6; i++) {
+        bool allowed = phases & 1 << i;
+        if (instance->state.phase == 1 << i) texts[0] = names[i];
+        *next++ = allowed ? separator : "";
+        *next++ = allowed ? names[i] : "";
+        if (allowed) separator = ", ";
+    }
+    refuse_with_values(instance, call, "called when %s: expected when %s%s%s%s%s%s%s%s%s%s%s%s", NULL, NULL, texts);
     return false;
 }
 
@@ -265,7 +261,7 @@ static Status advance_or_go_back(Instance *instance, const char *call, double ta
     format_message(text, memory, code);
     memcpy(memory, before, head);
     memcpy(memory + SKIP_FIRST + SKIP_COUNT, before + SKIP_FIRST, tail);
-    return report_reason(instance, code == LIMITED_CODE ? DISCARD : FAILED, call, text);
+    return report_values(instance, code == LIMITED_CODE ? DISCARD : FAILED, call, "%s", NULL, NULL, TEXTS(text));
 }
 
 Status step_to_point(Instance *instance, const char *call, double current, double size) {

@@ -49,9 +49,7 @@ def set_inputs(m, **values):
 
 
 def pieces(m, time):
-    """Advance to ``time``; the parts of states passed through, as (state's memory, age at entry,
-    age at exit).
-    """
+    """Advance to ``time``; states passed through as (memory, age at entry, age at exit)."""
     passed = []
     entry = [0.0 if have_inputs_changed(m) else stepper.local_time(m, m[at.TIME])]
     end_state = motion.end_state

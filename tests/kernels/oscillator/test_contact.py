@@ -1,6 +1,4 @@
-"""Which side of the boundary a state begins on, pressed together all through contact, released
-where the force vanishes.
-"""
+"""On which side of the boundary a state begins, and when contact ends."""
 
 import math
 
@@ -66,9 +64,7 @@ def test_a_force_of_rounding_alone_decides_nothing(force):
 
 
 def test_drives_that_cancel_but_for_rounding_decide_nothing():
-    """A harmonic at its zero, or against a constant near its largest value, on a mass or the box;
-    a slope of the force in which damper and spring cancel.
-    """
+    """A harmonic at its zero or against a constant; a slope in which damper and spring cancel."""
     unlike, still = {"d1": 0.3, "d2": 0.05, "k2": 1.3}, {"box_amplitude": 0.0}
     m = started(**unlike, **still, force1_amplitude=0.3, phase_start=HALF_TURN)
     assert first_nonzero_force_derivative(m, 0.0, 0.0, 0)[0] == 1

@@ -1,6 +1,4 @@
-"""The event function is the gap or minus the contact force; its derivatives are theirs, its bounds
-hold for all later times.
-"""
+"""The event function is the gap or minus the contact force, with its derivatives and bounds."""
 
 import math
 
@@ -260,9 +258,7 @@ DRIVEN = [
 
 @pytest.mark.parametrize("values", DRIVEN)
 def test_what_a_quintic_may_miss_of_a_growing_amplitude(values):
-    """Mass 2 is driven on its natural frequency, below that of mass 1 and above it; or both are
-    alike, and a force drives one of them.
-    """
+    """Mass 2 is driven on its natural frequency; or both are alike, and a force drives one."""
     m, signal = flight_and_gap(values, (-1e-3, 0.0, 1e-3, 0.0))
     assert m[at.SECULAR] != 0.0
     signal = derivative(signal, 5)

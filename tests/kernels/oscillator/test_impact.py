@@ -1,6 +1,4 @@
-"""An impact keeps momentum, reverses the gap's velocity times e, and loses what the energy balance
-says; sticking has no scale of its own.
-"""
+"""Momentum, restitution and energy of an impact; sticking has no scale of its own."""
 
 import pytest
 from hypothesis import assume, given

@@ -1,6 +1,4 @@
-"""Sequences of states: whole trajectories against two independent references, long flights, masses
-that always move together.
-"""
+"""Sequences of states against independent references, and how each state begins."""
 
 import math
 from fractions import Fraction
@@ -95,9 +93,7 @@ def test_a_motion_next_to_nothing_that_is_driven_goes_on(push):
     ],
 )
 def test_a_brief_contact_ends_where_newton_has_it(values):
-    """From rest its way, of the second to fourth order in time, is below the rounding of the closed
-    form.
-    """
+    """From rest its way is below the rounding of the closed form."""
     error = 1e-14 if "box_acceleration" in values else 1e-8
     own = {"m2": 1.3, "d1": 0.02, "box_jerk": 0.05, "box_snap": 0.3, "box_frequency": 4.0}
     values = {**DEFAULTS, **own, "phase_start": 0.0, **values}

@@ -24,9 +24,7 @@ def energy(m):
 @examples(30)
 @given(structures(damping=40.0), STATES, sizes(1e-8, 20.0))
 def test_energy_to_the_rounding_of_what_the_motion_is_made_of(values, state, stop):
-    """What a flight gains and loses is that of exact motion, to 1e-14 of the energy of forced
-    response and free parts: near rest under a drive these cancel.
-    """
+    """To 1e-14 of the energy of forced response and free parts: near rest these cancel."""
     names = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
     values = {**DEFAULTS, **values, **dict.fromkeys(names, 0.0)}
     m = advanced(flight(*state, **values), stop)

@@ -1,6 +1,4 @@
-"""The closed-form oscillator against an ODE solver and in high precision, from undamped to
-overdamped, and its envelope.
-"""
+"""The closed-form oscillator in high precision, undamped to overdamped, and its envelope."""
 
 import math
 

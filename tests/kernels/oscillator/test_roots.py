@@ -48,9 +48,7 @@ def walk_to(m, age, limit=1e5):
 
 
 def agree(found, expected, signal, horizon):
-    """Whether both are the same root, as close as the rounding of the event function's terms lets
-    it be.
-    """
+    """Whether both are the same root, up to the rounding of the event function's terms."""
     if expected is None:
         return found is None or found > horizon * (1 - 1e-9)
     terms = sum(abs(complex(c)) for c, _ in signal.terms) + sum(

@@ -1,6 +1,4 @@
-"""Short flights by their series: as exact relative to the gap itself, however low it is, as the
-closed form is relative to the displacements.
-"""
+"""Short flights by their series: exact relative to the gap itself, however low it is."""
 
 from unittest.mock import patch
 
@@ -48,9 +46,7 @@ def pressed_or_open(draw):
 @example({"clearance": 0.0, "phase_start": 1.0, "box_frequency": 4.0}, 1.0, 0.0, 0.0047)
 @example({"clearance": 0.0, "phase_start": 1.0, "m2": 0.3, "box_crackle": 1.0}, 1.0, 0.0, 0.13)
 def test_a_short_flight_is_that_of_the_gap(values, x, v, slope):
-    """Value, slope and curvature all along, and the end: those of Newton's law, to rounding of the
-    gap's own terms; the fifth derivative stays below the bound that makes the root certain.
-    """
+    """By Newton's law, to rounding of the gap's own terms, below the bound that makes it sure."""
     m, first, gap = leaving(values, x, v, slope)
     assume(m[at.SERIES] != 0.0)
     with mp.workdps(50):
@@ -104,9 +100,7 @@ def test_all_derivatives_at_the_start_are_newtons(values, x, v, slope, order):
     [(0.3, 0.3, 0.4), (0.53, 0.3, 0.17), (0.3, 0.53, 0.17), (-1.0, 0.9, 0.1), (0.7, -1.0, 0.3)],
 )
 def test_a_gap_that_may_not_be_concave_is_walked(third, fourth, fifth):
-    """Where the derivatives that bend it, and the bound, add up to what turns the curvature within
-    half again of the parabola's time.
-    """
+    """Where what bends it may turn the curvature within half again of the parabola's time."""
     m = flight(1.0, 0.0, 1.0, 1e-3, box_amplitude=0.0)
     bend = -m[at.SERIES_GAP + 4]
     longest = 1.5 * 2.0 * 1e-3 / bend
@@ -132,9 +126,7 @@ def test_the_order_of_a_series_goes_by_the_flights_angle(angle, order):
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("force", [0.0, 0.01])
 def test_all_that_moves_the_masses_raises_the_bound(sign, force):
-    """Each part of drive and state by its size, whichever way it acts: at least by 9.8 R^4 times
-    what it makes of V, and not by much more.
-    """
+    """Whichever way it acts: by 9.8 R^4 times what it makes of V at least, and not much more."""
     m = flight(0.1, 0.2, 0.1, 0.3, k2=3.0, d1=0.3, d2=0.1, box_acceleration=0.1, force1=force)
     rate, drive, apart = m[at.RATE], at.OSCILLATOR_1 + at.DRIVE, at.GAP + at.DRIVE
     driven = 1.35 * (abs(m[at.FORCE_V]) + abs(m[at.FORCE_X]) / rate)  # of a part of Z, over R
