@@ -213,11 +213,11 @@ def draw_lyapunov(*cases: xr.Dataset, title: str = "") -> Figure:
     for plane, data, words in zip(axes, cases, titles, strict=True):
         names = flag_words(data.verdict.attrs)
         x, label = axis_values(data, varied_dimension(data.exponent))
-        size = float(np.clip(1000.0 / len(x), 2.0, 4.0))
+        dot = float(np.clip(1000.0 / len(x), 2.0, 4.0))
         for verdict, (colour, shape) in VERDICTS.items():
             of = data.verdict.values == verdict
             exponent, error = data.exponent.values[of], data.standard_error.values[of]
-            marks: Any = {"fmt": shape, "color": colour, "markersize": size, "linewidth": 0.7}
+            marks: Any = {"fmt": shape, "color": colour, "markersize": dot, "linewidth": 0.7}
             plane.errorbar(x[of], exponent, yerr=error, label=names[verdict], **marks)
         below = data.exponent.values < lowest
         if below.any():

@@ -102,8 +102,8 @@ def draw_curves_of_quantity(
         axes.plot(x.values, curve, **DIRECTION_LINES[direction or "up"], color=colour, label=label)
         if len(x.values) <= MAX_DISTINCT // 4:
             axes.plot(x.values, curve, **marker_keywords(len(x.values), MarkStyle(colour, 0.6)))
-        at = int(np.nanargmax(curve))
-        largest[structure] = max(largest.get(structure, (0.0, 0.0)), (curve[at], x.values[at]))
+        top = int(np.nanargmax(curve))
+        largest[structure] = max(largest.get(structure, (0.0, 0.0)), (curve[top], x.values[top]))
     axes.margins(x=0.0, y=0.12)
     set_plain_log_scale(axes)
     axes.set_ylabel(append_unit(NAMES[str(values.name)], unit))
