@@ -27,7 +27,7 @@ from ..model.outcomes import ABSENT
 from ..model.ranges import PUSHES
 from ..response import questions
 from ..response.labels import make_dataset, si_state_coordinate, variable
-from ..response.questions import Point, State
+from ..response.questions import Point, State, checked_state
 from ..response.signatures import as_given, question
 from ..running.job import FAMILY, Fmus, Table
 from ..running.options import Running
@@ -298,9 +298,9 @@ def basin(
     )
     if sides[0].name == sides[1].name:
         raise InputError(f"x and y: {sides[0].name} twice; expected two coordinates")
-    fields = {"x": sides[0], "y": sides[1], "at": questions.checked_state("at", at, structure)}
-    fields |= {"known": known.states if known else (), "settings": run}
-    return as_given(excitation=point.excitation.replace(phase=phase), **fields)
+    excitation, at = point.excitation.replace(phase=phase), checked_state("at", at, structure)
+    fields = {"x": sides[0], "y": sides[1], "at": at, "known": known.states if known else ()}
+    return as_given(excitation=excitation, settings=run, **fields)
 
 
 def mean_attractor_state(result: xr.Dataset, frequency: float) -> Floats:

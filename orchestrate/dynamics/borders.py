@@ -22,7 +22,11 @@ from ..running.options import Running
 from . import branches
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcation_kinds import KINDS, Kind
-from .codimension_two import POINT_KINDS, locate_codimension_two_points
+from .codimension_two import (
+    POINT_KINDS,
+    CodimensionTwoPoint,
+    locate_codimension_two_points,
+)
 from .continuation import SOLVER_ERRORS, ArclengthStepper, Root, newton_correct, unit_vector
 from .families import Family, Setting, require_known_parameters
 from .orbit_records import branch_dataset, branch_table, located_variables, orbit_row
@@ -64,7 +68,7 @@ class BorderJob(Question):
         roots = [*reversed(back.points[1:]), *forth.points]
         points = locate_codimension_two_points(curve, roots, (back.end, forth.end))
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            solved = [*roots, *points]
+            solved: list[Root | CodimensionTwoPoint] = [*roots, *points]
             rows = [orbit_row(instance, curve.family, s.unknowns, s.residual) for s in solved]
         angles = [root.unknowns[-1] if self.kind == Kind.TORUS else np.nan for root in roots]
         more = {"angle": np.array(angles), "ends": np.array([back.end, forth.end])}
@@ -183,8 +187,9 @@ def border(
             f"over = {names!r}: expected two different names, the first one that of start, "
             f"{start.attrs.get('over')!r}"
         )
+    rows: Any = limits
     try:
-        pairs = tuple(branches.checked_limits(*each) for each in zip(names, limits, strict=True))
+        pairs = tuple(branches.checked_limits(*each) for each in zip(names, rows, strict=True))
     except NOT_NUMBERS:
         expected = "expected a lower and an upper one for each parameter"
         raise InputError(f"limits = {limits!r}: {expected}") from None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ..constants import TURN
@@ -25,7 +27,7 @@ AWAY = 1e-3  # along the new branch, in unknowns over their scale: where its gap
 
 def first_point_of_leaving_branch(kind: int, point: OrbitPoint) -> OrbitPoint:
     """Return the orbit at a bifurcation as a point of the branch that leaves there."""
-    first_points = {
+    first_points: dict[int, Callable[[OrbitPoint], OrbitPoint]] = {
         Kind.FLIP: double_period,
         Kind.TOUCHING: with_touching_impact,
         Kind.GRAZING: without_grazing_impact,
@@ -33,7 +35,7 @@ def first_point_of_leaving_branch(kind: int, point: OrbitPoint) -> OrbitPoint:
     if kind not in first_points:
         text = "no branch of orbits leaves there, expected period doubling or grazing"
         raise InputError(f"switch: {KINDS[kind]}; {text}")
-    return first_points[Kind(kind)](point)
+    return first_points[kind](point)
 
 
 def double_period(point: OrbitPoint) -> OrbitPoint:

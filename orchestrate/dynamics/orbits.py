@@ -169,7 +169,8 @@ def checked_guess(
         return guess_from_result(guess)
     if "impact_time" not in guess:
         raise InputError(f"guess: without impact_time; {expected}")
-    times = np.sort(np.ravel(checked_numbers("impact_time", guess["impact_time"])).astype(float))
+    numbers = np.asarray(checked_numbers("impact_time", guess["impact_time"]), dtype=float)
+    times = np.sort(numbers.ravel())
     phases = frequency * times
     if not (phases[0] >= 0.0 and phases[-1] - phases[0] < 2.0 * np.pi * period):
         raise InputError(f"impact_time = {times.tolist()}: expected times within {period} periods")
