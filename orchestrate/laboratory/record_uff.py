@@ -13,6 +13,7 @@ import numpy as np
 from ..errors import InputError
 from .columns import Column, Columns, Floats
 from .record_labview import needed_package
+from .time_base import fewest_digits
 
 Dataset = dict[str, Any]  # as pyuff gives it
 log = logging.getLogger(__name__)
@@ -98,11 +99,7 @@ def roundest_rate_for_step(step: float) -> float:
         raise InputError(f"abscissa increment {step!r}; expected a number > 0")
     half = 0.5001 * 10.0 ** (math.floor(math.log10(step)) - 5)
     low, high = 1.0 / (step + half), 1.0 / (step - half)
-    for digits in range(1, 10):
-        rate = float(f"{1.0 / step:.{digits}g}")
-        if low <= rate <= high:
-            return rate
-    return 1.0 / step
+    return fewest_digits(1.0 / step, lambda rate: low <= rate <= high) or 1.0 / step
 
 
 def write_uff(path: Path, columns: list[Column], sample_rate: float, binary: bool) -> None:

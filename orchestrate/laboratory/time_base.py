@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
 from ..errors import InputError
@@ -78,11 +81,13 @@ def roundest_rate(times: Floats, resolution: float) -> float | None:
     unequal = np.abs(steps - np.median(steps)) > 0.05 * resolution
     if not 0.0 < resolution <= 10.0 * step or unequal.sum() < 3:
         return None
-    for digits in range(1, 11):
-        rate = float(f"{1.0 / step:.{digits}g}")
-        if np.ptp(times - count / rate) <= 1.05 * resolution:
-            return rate
-    return None
+    return fewest_digits(1.0 / step, lambda f: np.ptp(times - count / f) <= 1.05 * resolution)
+
+
+def fewest_digits(number: float, fits: Callable[[float], Any]) -> float | None:
+    """Return a number rounded to as few digits as fit; None if ten do not."""
+    rounded = (float(f"{number:.{digits}g}") for digits in range(1, 11))
+    return next(filter(fits, rounded), None)
 
 
 def rounding_range(resolution: float, step: float) -> float:

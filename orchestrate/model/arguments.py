@@ -163,7 +163,8 @@ def checks_by_field(kind: type) -> dict[str, Check]:
 
 def check_and_convert_fields(instance: Any) -> None:
     """Check the fields of a dataclass whose types have a check; set them to what it returns."""
-    for name, check in checks_by_field(type(instance)).items():
+    kind: type = type(instance)
+    for name, check in checks_by_field(kind).items():
         object.__setattr__(instance, name, check(name, getattr(instance, name)))
 
 
