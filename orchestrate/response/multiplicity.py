@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fmu_src.kernels import repetition
-from fmu_src.kernels.repetition import MIN_RELATIVE_GAP, lacks_impacts, memory_size
+from fmu_src.kernels.repetition import lacks_impacts, memory_size
 
 from ..fmu import respond_library
 from ..model.outcomes import WORDS
 
-__all__ = ["MIN_RELATIVE_GAP", "lacks_impacts", "memory_size"]
+__all__ = ["lacks_impacts", "memory_size"]
 DECIDED = {n: WORDS[n] for n in (repetition.IRREGULAR, repetition.REPEATED, repetition.UNDECIDED)}
 
 

@@ -16,12 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 from ..fmu import START_VALUES, Instance, Oscillator, traits_for_loops
 from ..fmu.fmi import BROKEN, PAUSED, value_references
 from ..fmu.impacts import STATE
-from ..fmu.oscillator import COUNTED, COUNTS, PEAKS, KnownMotions, ResponseProgress, ResponseTask
+from ..fmu.oscillator import COUNTS, PEAKS, KnownMotions, ResponseProgress, ResponseTask
 from .multiplicity import memory_size
 from .questions import Point
 
 MAX_WORK = 200_000  # periods and impacts of one call: between two calls an interrupt is heard
-__all__ = ["COUNTED", "COUNTS", "PEAKS"]
 Floats = NDArray[np.float64]
 
 

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, Instance, gaps_of_states
+from ..fmu.oscillator import PEAKS
 from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import Count, Positive, Transient
@@ -21,7 +22,7 @@ from ..running.store import StoredRows
 from . import labels
 from .multiplicity import DECIDED
 from .questions import Point, StartedSeriesQuestion, Values
-from .response_loop import PEAKS, LoopSettings, response_loop
+from .response_loop import LoopSettings, response_loop
 from .signatures import as_given, question
 
 Direction = Literal["up", "down", "both", "given"]
