@@ -18,8 +18,8 @@ module                    idea
 :mod:`.record`            the one dataset of channels, measured or simulated
 :mod:`.record_checks`     saturated, dead and identical channels, implausible units and times
 :mod:`.record_of_run`     the run of a weak drive as a record
-:mod:`.columns`           which columns of a file are its channels, their units, lost samples
-:mod:`.missing_units`     what is missing to read columns, and the arguments that give it
+:mod:`.headings`          what files call quantities and units: headings, split; names, texts
+:mod:`.columns`           which columns of a file are its channels, units that lack, lost samples
 :mod:`.stated_channels`   what a user states of a file's channels, as TOML or a mapping
 :mod:`.channel_table`     the columns of a file as a dataset, and the setup that is written of it
 :mod:`.conversion`        velocities, displacements and voltages made accelerations

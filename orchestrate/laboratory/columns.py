@@ -1,7 +1,7 @@
 """Columns of a file as they stand there, and which of them are a record's channels.
 
-Columns with usual names (:data:`NAMES`) are known; those assigned by position are reported as a
-guess, unread ones give a warning.
+Columns with usual names (:data:`.headings.NAMES`) are known; those assigned by position are
+reported as a guess, unread ones give a warning.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from ..constants import TURN
 from ..errors import InputError
 from .conversion import (
     ACCELERATIONS,
@@ -29,7 +28,7 @@ from .conversion import (
     si_factor,
     text_by_channel,
 )
-from .missing_units import check_sensitivities, check_units, format_by_channel
+from .headings import NAMES, SWEPT, TIMES, describe_text, split_heading
 from .pieces import Floats
 from .record import CHANNELS, FORCES, SHORT_NAMES
 from .record_checks import doubt_about_time_unit, first_skipped_row, is_ascending
@@ -37,84 +36,8 @@ from .signals import HERTZ, checked_quantity
 
 Named: TypeAlias = "Mapping[str, str | int] | Sequence[str | int] | None"  # columns by a caller
 MOST_NAMES = 12  # of columns in a message
-LONG_HEADING = 300  # letters of a heading that are read: patterns take the square of them in time
+USUAL_UNITS = "m/s2, g, mm/s, um", "100 mV/g"  # and the sensitivity of a sensor in volts
 LARGEST = 1e100  # of a number in SI units: derivatives and spectra of larger ones leave the range
-FREQUENCIES = {  # in Hz
-    **{"hz": 1.0, "1/s": 1.0, "khz": 1e3, "rad/s": 1.0 / TURN},
-    **dict.fromkeys(("rpm", "1/min"), 1.0 / 60.0),
-}
-ANGLES = {  # in rad
-    **dict.fromkeys(("rad", "radian", "radians"), 1.0),
-    **dict.fromkeys(("deg", "\u00b0", "degree", "degrees"), TURN / 360.0),
-}
-RATIO_UNITS = dict.fromkeys(("1", "-", "g/g", "m/m", "mm/mm", "m/s2/m/s2", "(m/s2)/(m/s2)"), 1.0)
-TIMES = {  # in s
-    **dict.fromkeys(("s", "sec", "second", "seconds"), 1.0),
-    **dict.fromkeys(("ms", "msec"), 1e-3),
-    **dict.fromkeys(("us", "usec", "\u00b5s", "\u03bcs"), 1e-6),
-    **{"ns": 1e-9, "min": 60.0, "h": 3600.0},
-}
-# What files call a quantity, as patterns of names in small letters and digits
-SENSOR = (
-    "(?:a|acc|accel|acceleration|accelerometer|beschleunigung|sensor|aufnehmer|capteur|"
-    "accélération|acelerometro|acelerómetro|accelerometro|geber|ch|channel|kanal)?"
-)
-BASE = (
-    "(?:base|basis|box|table|tisch|schwingtisch|shaker|shakertable|shakerhead|armature|ref|control|"
-    "input|steuersensor|erreger|aufnahme|fixture|clamp|"
-    "einspannung|fuß|fuss|socle|embase|mesa|tavola|slip|sliptable|excitation|reference|referenz)"
-)
-FACE = "(?:face|mass|masse|fläche)"
-BEAM = (
-    "(?:beam|balken|face|tip|spitze|response|antwort|poutre|viga|trave|specimen|probe|prüfling|"
-    "laser|vibrometer|ldv)"
-)
-FORCE = (
-    "(?:impact|impulse?|modal)?(?:force|kraft|fuerza|forza|load|hammer)(?:cell|sensor|geber|input)?"
-)
-NUMBERED = f"(?:a|acc|accel|acceleration|beschleunigung|{SENSOR}{FACE})"
-NAMES = {
-    "time": "time|t|zeit|temps|tiempo|tempo|timestamp|xvalue|zeitachse",
-    "box_acceleration": rf"{SENSOR}\d*{BASE}{SENSOR}[xyz]?",
-    "acceleration1": f"{NUMBERED}1{SENSOR}[xyz]?|{SENSOR}{BEAM}{SENSOR}[xyz]?",
-    "acceleration2": f"{NUMBERED}2{SENSOR}[xyz]?",
-    "force1": f"{FORCE}1?",  # that has no number is on the first half
-    "force2": f"{FORCE}2",
-}
-MOTION = "(?:amplitude|acceleration|acc|a|face|mass|velocity|v|displacement|x)"
-RATIO = "(?:transmissibility|ratio|response|magnitude)"
-SWEPT = "f|hz|freq|frequenz|frequency"
-WORDS = r"[^\W\d_]{3,}.*|.*\w \w.*"  # in parentheses, hardly a unit: shaker head, SN 4711
-HEADING = re.compile(r"(?P<name>.*?)[\s_/]*[\[(](?P<unit>[^\[\]()]*)[\])]")
-SUFFIX = re.compile(  # as the last word: LDV mm/s, acc_base_g, time_ms
-    r"(?P<name>.*?\w)[\s_]+(?P<unit>g|m?s|[u\u00b5]s|[mu\u00b5]m|m?m/s(\^?2|\u00b2)?|(?<=_)(m?V|k?N)|mV|kN)"
-)
-QUOTIENT = re.compile(r"(?P<name>.+?)(?:\s*[/,]\s*|\s+in\s+)(?P<unit>.*\D.*|-)")
-TEXTS = {  # what a field is that is no number
-    "a clock time": r"\d{1,2}:\d\d(:\d\d([.,]\d+)?)?",
-    "a date": r"(\d{1,2}[./-]\d{1,2}[./-]\d{2,4}|\d{4}-\d\d-\d\d)([T ].*)?",
-    "a number with thousands separators": r"[+-]?\d{1,3}([.,' \xa0\u202f]\d{3})+([.,]\d+)?",
-}
-
-
-def column_patterns_of_face(number: str, pattern: str) -> dict[str, str]:
-    """Return regular expressions of a face's column names in a resonance curve, by quantity."""
-    motion, alone = f"(?:{MOTION}|{RATIO}){pattern}", "|order|harmonic" if number == "1" else ""
-    return {
-        f"amplitude{number}": f"{motion}|(?:{MOTION}|{RATIO}){number}order1",
-        f"phase{number}": f"phase{pattern}",
-        f"amplitude{number}_order2": f"(?:{motion}order{alone})2",
-        f"amplitude{number}_order3": f"(?:{motion}order{alone})3",
-        f"floor{number}": f"(?:floor|noise){pattern}",
-    }
-
-
-CURVE_NAMES = {
-    "frequency": SWEPT,
-    "level": f"input|drive|excitation|level|{SENSOR}{BASE}(?:acceleration|amplitude|level)?",
-    **column_patterns_of_face("1", "1?"),  # a face that has no number is the first
-    **column_patterns_of_face("2", "2"),
-}
 
 
 @dataclass(frozen=True)
@@ -126,6 +49,9 @@ class Column:
     values: Floats  # NaN in a column of texts
     text: str = ""  # the first one of such a column
     sensitivity: str = ""  # of a voltage, as it stands there: 100 mV/g
+
+
+Used = Mapping[str, Column]  # by channel
 
 
 @dataclass(frozen=True)
@@ -146,31 +72,6 @@ class Columns:
             return replace(self, sample_rate=checked_quantity(HERTZ, "sample_rate", sample_rate))
         except InputError as error:
             raise InputError(f"{self.path}: {error}") from None
-
-
-def split_heading(heading: str) -> tuple[str, str]:
-    """Split a column's heading; return its name and its unit, an empty string without one."""
-    plain = heading.strip().strip('"').strip()[:LONG_HEADING]
-    parts = HEADING.fullmatch(plain)
-    if parts and re.fullmatch(WORDS, parts["unit"]) and not is_unit(parts["unit"]):
-        return plain, ""  # a place or a sensor
-    parts = parts or SUFFIX.fullmatch(plain)
-    if parts is None and (quotient := QUOTIENT.fullmatch(plain)) and is_unit(quotient["unit"]):
-        parts = quotient
-    return (plain, "") if parts is None else (parts["name"].strip(), parts["unit"].strip())
-
-
-def describe_text(text: str) -> str:
-    """Return a text in quotes, and what it is where that is known: a clock time, for instance."""
-    kinds = [kind for kind, pattern in TEXTS.items() if re.fullmatch(pattern, text)]
-    return ", ".join([repr(text[:40]), *kinds[:1]])
-
-
-def is_unit(text: str) -> bool:
-    """Return whether a text is a unit that columns of records or resonance curves may have."""
-    motions = (ACCELERATIONS, TIMES, SPEEDS, LENGTHS, VOLTAGES, FREQUENCIES, ANGLES)
-    known = (*motions, RATIO_UNITS, OF_FORCES[0])
-    return any(normalize_unit(text) in units for units in known)
 
 
 BY_USER, BY_NAME, LEFT, BY_ORDER = "by the caller", "by its name", "what is left", "by its order"
@@ -256,6 +157,51 @@ def convert_to_si(
             raise InputError(f"{label}: sensitivity {sensor}; {expected}")
         channels[name] = scaled_values(table, column, factor)
     return time, channels, derivatives, read_as | unit_attributes(used, units)
+
+
+def check_units(
+    path: str, used: Used, units: Mapping[str, str], stated: Mapping[str, str], setup_file: str
+) -> None:
+    """Raise where columns have no unit, with the argument that states it for each."""
+    known = {n: units.get(n, one.unit) or stated.get(n, one.sensitivity) for n, one in used.items()}
+    if unknown := [name for name, text in known.items() if not text]:
+        words = {n: SHORT_NAMES.get(n, n).replace(" ", "") for n in (*units, *unknown)}
+        order = [n for n in ("time", *used) if n in words]
+        usual, volts = ("N, kN", "22 mV/N") if {*unknown} <= {*FORCES} else USUAL_UNITS
+        volts = f', or V or mV with sensitivity="{volts}"'
+        text = f"no unit; expected one such as {usual}{volts}: give it by unit="
+        sections = ", ".join(f"[{words[n]}]" for n in unknown)
+        there = f', or in {setup_file} write unit = "..." below {sections}' if setup_file else ""
+        argument = format_by_channel(order, units)
+        columns = format_file_and_columns(path, used, unknown)
+        raise InputError(f"{columns}: {text}{argument}{there}")
+
+
+def check_sensitivities(
+    path: str, used: Used, units: Mapping[str, str], stated: Mapping[str, str]
+) -> None:
+    """Raise where columns in volts have no sensitivity, with the argument that states it."""
+    volts = {n: units.get(n, one.unit) for n, one in used.items()}
+    volts = {n: unit for n, unit in volts.items() if normalize_unit(unit) in VOLTAGES}
+    if bare := [name for name in volts if not stated.get(name, used[name].sensitivity)]:
+        usual = [] if {*bare} <= {*FORCES} else ["100 mV/g or 50 mV/(mm/s)"]
+        usual += ["22 mV/N"] if {*bare} & {*FORCES} else []
+        text = f"in {volts[bare[0]]}, without a sensitivity; expected one such as "
+        option = format_by_channel([n for n in used if n in (*stated, *bare)], stated)
+        text = f"{text}{', of forces '.join(usual)}: give it by sensitivity={option}"
+        raise InputError(f"{format_file_and_columns(path, used, bare)}: {text}")
+
+
+def format_file_and_columns(path: str, used: Used, names: Sequence[str]) -> str:
+    columns = (f'column "{used[name].name}" ({SHORT_NAMES[name]})' for name in names)
+    return f"{path}, {', '.join(columns)}"
+
+
+def format_by_channel(names: Sequence[str], values: Mapping[str, str]) -> str:
+    """Format an argument by channel, to be completed: ``"base=V,face1=..."``."""
+    words = (SHORT_NAMES.get(name, name).replace(" ", "") for name in names)
+    pairs = zip(words, (values.get(name) or "..." for name in names), strict=True)
+    return f'"{",".join(map("=".join, pairs))}"'
 
 
 def times_in_s(table: Columns, column: Column, unit: str) -> Floats | None:

@@ -11,12 +11,8 @@ from ..errors import InputError
 from ..lazy import xr
 from ..model.arguments import checked_path
 from .columns import (
-    ANGLES,
     BY_NAME,
     BY_USER,
-    CURVE_NAMES,
-    FREQUENCIES,
-    RATIO_UNITS,
     Column,
     ColumnAssignment,
     Columns,
@@ -27,6 +23,7 @@ from .columns import (
     warn_of_lines_left_out,
 )
 from .conversion import normalize_unit, si_factor
+from .headings import ANGLES, CURVE_NAMES, FREQUENCIES, RATIO_UNITS
 from .pieces import Floats
 from .record_files import file_kind, read_columns_in_process
 from .resonance_curve import CurveColumns, acceleration_factor, make_curve

@@ -19,8 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .columns import TEXTS, Column, Columns, describe_text, is_unit, split_heading
+from .columns import Column, Columns
 from .conversion import SENSITIVITY
+from .headings import TEXTS, describe_text, is_unit, split_heading
 
 MOST_HEADING = 200  # lines
 SEPARATORS = (";", "\t", ",", " ")

@@ -14,8 +14,8 @@ from ..constants import TURN
 from ..errors import InputError
 from ..lazy import xr
 from ..response.labels import variable
-from .columns import RATIO_UNITS
 from .conversion import OF_MOTIONS, normalize_unit
+from .headings import RATIO_UNITS
 from .pieces import Floats
 from .record import array_of_numbers
 
