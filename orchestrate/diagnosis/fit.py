@@ -301,8 +301,8 @@ class Results:
         at = {name: number for number, name in enumerate(reported)}
         error = np.sqrt(np.maximum(np.diag(covariance), 0.0))
         found, limit = {}, self.job.data.settings.undetermined
-        for name in at.keys() & {"zeta", "zeta1", "zeta2"}:
-            if self.is_described[position] and error[at[name]] > limit * reported[name]:
+        for name in ("zeta", "zeta1", "zeta2") if self.is_described[position] else ():
+            if name in at and error[at[name]] > limit * reported[name]:
                 number = f"{reported[name]:.2g}, standard error {error[at[name]]:.2g}"
                 found[name] = f"{name} is not determined ({number})"
         if {"f1", "f2"} <= at.keys():
