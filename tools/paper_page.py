@@ -13,6 +13,7 @@ import shutil
 import sys
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -90,7 +91,7 @@ def main(folder: str) -> None:
     results = json.loads(CLAIMS.read_text("utf-8"))
     for path in PAGES:
         text = fill_page(path.read_text("utf-8"), results)
-        write_atomically(path, lambda file, text=text: file.write_text(text, "utf-8"))
+        write_atomically(path, partial(Path.write_text, data=text, encoding="utf-8"))
 
 
 if __name__ == "__main__":

@@ -81,7 +81,9 @@ class Option:
 
     def to_parameter(self, attribute: str, group: cyclopts.Group) -> inspect.Parameter:
         read, called = (self.read, "X") if self.read else reader_and_metavar(self.kind)
-        convert: Any = read and (lambda _, texts: read(texts[-1].keyword or "", texts[-1].value))
+        convert: Any = (
+            (lambda _, tokens: read(tokens[-1].keyword or "", tokens[-1].value)) if read else None
+        )
         details = cyclopts.Parameter(
             name=None if self.position else self.names,
             help=self.help,

@@ -300,7 +300,8 @@ class Results:
         reported, covariance = self.reported_values_and_covariance(position)
         at = {name: number for number, name in enumerate(reported)}
         error = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        found, limit = {}, self.job.data.settings.undetermined
+        found: dict[str, str] = {}
+        limit = self.job.data.settings.undetermined
         for name in ("zeta", "zeta1", "zeta2") if self.is_described[position] else ():
             if name in at and error[at[name]] > limit * reported[name]:
                 number = f"{reported[name]:.2g}, standard error {error[at[name]]:.2g}"

@@ -12,6 +12,7 @@ from .written import DOCS
 MOST_WORDS = 1500
 GENERATED = {  # by a tool, of which each row may be looked up but none is read in turn
     "claims": "tools.paper_page",
+    "source_map": "tools.source_map",
     "variables": "tools.assets",
 }
 PAGES = sorted(DOCS.glob("*.md"))

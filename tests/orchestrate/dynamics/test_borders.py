@@ -13,7 +13,7 @@ from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.closed_form import ClosedForm
 from orchestrate.model import Excitation, Structure
-from orchestrate.response import questions
+from orchestrate.response import signatures
 from orchestrate.response.questions import Point
 
 from ...sparing import ordinary
@@ -59,7 +59,7 @@ def test_a_fold_is_found_from_either_side_of_it(monkeypatch):
     folded = Structure.nondimensional(D=0.02, clearance=3.0)
     box = {"over": "frequency", "frequency": 1.12, "amplitude": 1.12**-2}
     start = branch(folded, **box, limits=(1.1, 1.36), longest=0.3)
-    monkeypatch.setattr(questions, "compute_dataset", lambda job, *rest: job)
+    monkeypatch.setattr(signatures, "compute_dataset", lambda job, *rest: job)
     (at,) = np.flatnonzero(start.bifurcation_kind.values == Kind.FOLD)
     value = float(start.bifurcation_value[at])
     question = {"over": ("frequency", "e"), "limits": [(1.2, 1.4), (0.6, 0.8)]}

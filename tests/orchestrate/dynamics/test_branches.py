@@ -14,7 +14,7 @@ from orchestrate.dynamics.branches import branch, complete_excitation
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.flags import flag_words
 from orchestrate.model import Excitation, Structure
-from orchestrate.response import questions
+from orchestrate.response import signatures
 from orchestrate.response.questions import Point
 
 from ...sparing import ordinary
@@ -190,7 +190,7 @@ def test_what_pushes_at_the_start_is_kept(monkeypatch):
     """Of an orbit that is stable, whose manifold is refused after that."""
     pushes = {"box_acceleration": 0.05, "force1": 0.02}
     start = orbit(PAPER, eta=1.7, **pushes)
-    monkeypatch.setattr(questions, "compute_dataset", lambda job, *rest: job)
+    monkeypatch.setattr(signatures, "compute_dataset", lambda job, *rest: job)
     kept = branch(PAPER, start=start, limits=(1.6, 1.8))
     assert dict(kept.setting.excitation) == pushes
     given = branch(PAPER, start=start, limits=(1.6, 1.8), box_acceleration=0.0)
