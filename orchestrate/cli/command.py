@@ -81,9 +81,10 @@ class Option:
 
     def to_parameter(self, attribute: str, group: cyclopts.Group) -> inspect.Parameter:
         read, called = (self.read, "X") if self.read else reader_and_metavar(self.kind)
-        convert: Any = (
-            (lambda _, tokens: read(tokens[-1].keyword or "", tokens[-1].value)) if read else None
-        )
+
+        def convert(_: Any, texts: Any) -> Any:
+            return read(texts[-1].keyword or "", texts[-1].value) if read else None
+
         details = cyclopts.Parameter(
             name=None if self.position else self.names,
             help=self.help,
@@ -95,7 +96,7 @@ class Option:
             required=self.needed,
             consume_multiple=self.many or None,
             allow_repeating=True,  # the last one counts
-            converter=convert,
+            converter=convert if read else None,
             n_tokens=1 if read else None,
         )
         return inspect.Parameter(
