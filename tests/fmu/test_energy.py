@@ -30,7 +30,7 @@ def test_energy_balance_of_driven_motion_closes(fmu, clearance, gamma, e_slope, 
     values = {"m1": 1.0, "m2": 1.5, "k1": 1.0, "k2": 1.4, "d1": 0.02, "d2": 0.03, "e": 0.7}
     values |= {"box_amplitude": 0.8, "box_frequency": 1.13}
     values |= {"clearance": clearance, "gamma": gamma, "e_slope": e_slope, **more}
-    end, instants = 40.0, {0.0, 40.0}
+    end, instants = 60.0, {0.0, 60.0}
     f = open_fmu(fmu).start(**values)
     while f.time < end:  # where to split the quadrature
         instants.add(f.step(f.time + 2.0**-8).one("impact_time"))
