@@ -97,7 +97,7 @@ def signs_of_orders(channels: Channels, periods: float) -> ResponseSigns:
     # white noise: Hann's weights over n samples leave 6 ln(2) s^2/n in the median of an off-order,
     # which impacts hardly raise
     samples = np.array([window.part.stop - window.part.start for window in windows])
-    medians = [median_of_finite_columns(power[order] * samples) for order in OFF_ORDERS]
+    medians = [row_medians_over_finite_columns(power[order] * samples) for order in OFF_ORDERS]
     rms = np.asarray(np.sqrt(np.fmin.reduce(medians) / (6.0 * math.log(2.0))))
     return ResponseSigns(signs, peaks, curves, rms, float(frequency.max()))
 
@@ -113,7 +113,7 @@ def nan_argmax(power: Floats) -> NDArray[np.intp]:
     return np.asarray(np.nan_to_num(power, nan=-1.0).argmax(axis=-1))
 
 
-def median_of_finite_columns(values: Floats) -> Floats:
+def row_medians_over_finite_columns(values: Floats) -> Floats:
     """Return the median of each row over the columns without NaN; NaN where there are none."""
     known = values[:, np.isfinite(values).all(axis=0)]
     return np.median(known, axis=-1) if known.size else np.full(len(values), np.nan)
@@ -147,7 +147,7 @@ def curve_and_noise_by_spectra(channels: Channels) -> ResponseSigns:
     """Compute the response at the lines that the box excites, and the noise; without orders."""
     _, (frequency, box, rows, cross), excited = spectra_and_excited_lines(channels)
     low, high = 0.36 * channels.sample_rate, 0.44 * channels.sample_rate
-    density = median_of_finite_columns(rows[:, (frequency >= low) & (frequency <= high)])
+    density = row_medians_over_finite_columns(rows[:, (frequency >= low) & (frequency <= high)])
     response = cross[:, excited] / box[excited]
     level, unknown = float(channels.box.std()), np.full(len(rows), np.nan)
     curve = Curve(0, level, frequency[excited], response, unknown)

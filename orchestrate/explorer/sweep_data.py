@@ -61,7 +61,7 @@ def empty_sweep(structure: Structure, units: Units) -> SweepData:
 
 def read_sweep(data: xr.Dataset) -> SweepData:
     try:
-        return read_checked_sweep(data, checked_direction(data))
+        return read_checked_sweep(data, checked_sweep_direction(data))
     except InputError:
         raise
     except READING as error:
@@ -158,7 +158,7 @@ def sweep_settings(data: xr.Dataset) -> dict[str, float]:
     return settings
 
 
-def checked_direction(data: xr.Dataset) -> str:
+def checked_sweep_direction(data: xr.Dataset) -> str:
     """Return the direction of a sweep; raise if the page cannot show the sweep."""
     needed = {"eta", "frequency", "amplitude", "impacts_per_period", "end_state"}
     missing = needed - {str(name) for name in data.variables}

@@ -198,7 +198,7 @@ def file_kind(path: Path) -> str:
     return ENDINGS[path.suffix.lower()]
 
 
-def check_readable_size(path: Path) -> None:
+def check_readable_file(path: Path) -> None:
     """Raise unless a path is an ordinary file, not empty and not too large to read."""
     try:
         status = path.stat()
@@ -277,7 +277,7 @@ COMPILED = ("mat", "netcdf")
 def read_columns_in_process(path: Path, *arguments: object) -> Columns:
     """Read the columns of a file in a process of its own; make names and texts printable."""
     kind = file_kind(path)
-    check_readable_size(path)
+    check_readable_file(path)
     (reader, expected), keep = READERS[kind], kind not in COMPILED
     expected = f"expected {expected}"
     content = read_in_process(reader, path, *arguments, expected=expected, keep_process=keep)

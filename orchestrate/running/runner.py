@@ -126,7 +126,7 @@ class Runner:
 
             return cluster_workers(self.options.cluster, count)
         if self.foreign:
-            return process_workers(min(count, max(1, self.count_usable_workers())), self.foreign)
+            return process_workers(min(count, max(1, self.count_startable_tasks())), self.foreign)
         return thread_workers(count) if self.in_threads else process_workers(count)
 
     def progress_total(self) -> int:
@@ -140,9 +140,9 @@ class Runner:
             return True
         left = self.progress_total() - self.items_done()
         seconds = (time.perf_counter() - self.start_time) / self.computed_items * left
-        return seconds < MIN_PARALLEL_SECONDS or self.count_usable_workers() < 2
+        return seconds < MIN_PARALLEL_SECONDS or self.count_startable_tasks() < 2
 
-    def count_usable_workers(self) -> int:
+    def count_startable_tasks(self) -> int:
         unfinished = (one for one in self.schedules.values() if not one.is_complete)
         return sum(schedule.estimate_startable_tasks() for schedule in unfinished)
 
