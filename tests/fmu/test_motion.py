@@ -120,21 +120,26 @@ def grazing_start(values, state, depth):
     return float(x2), bottom
 
 
-GRAZES = [
-    {"box_frequency": 0.4},
-    {"box_frequency": 1.3, "d1": 0.2},
-    {"box_frequency": 2.2, "d1": 0.0, "d2": 0.4},
+EARLY = (-2.0, 0.5, -1.6, -0.8)
+GRAZES = [  # in the first interval between nodes, or in a later one
+    ({"box_frequency": 0.4}, EARLY),
+    ({"box_frequency": 1.3, "d1": 0.2}, EARLY),
+    ({"box_frequency": 2.2, "d1": 0.0, "d2": 0.4}, EARLY),
+    ({"box_frequency": 0.4}, (0.1, -1.4, 1.15, 0.5)),
+    ({"box_frequency": 1.3, "d1": 0.2}, (0.4, -1.4, 0.69, -0.9)),
+    ({"box_frequency": 0.4}, (0.2, -1.4, 1.2, -0.7)),
 ]
 
 
-@pytest.mark.parametrize("values", GRAZES)
-def test_a_driven_near_miss_and_a_graze(fmu, values):
+@pytest.mark.parametrize(("values", "state"), GRAZES)
+def test_a_driven_near_miss_and_a_graze(fmu, values, state):
     """The first minimum lies 1e-8 above or below nothing: no impact is made up, none is missed."""
-    values, state = {"k2": 3.0, **values}, (-2.0, 0.5, -1.6, -0.8)
+    values = {"k2": 3.0, **values}
     for depth in (1e-8, -1e-8):
         x2, bottom = grazing_start(values, state, depth)
-        starts = dict(zip(("x1_start", "v1_start", "v2_start"), (-2.0, 0.5, -0.8), strict=True))
-        f = open_fmu(fmu).start(x2_start=x2, **starts, **values).step(float(bottom) + 1e-6)
+        names = ("x1_start", "v1_start", "x2_start", "v2_start")
+        starts = dict(zip(names, (state[0], state[1], x2, state[3]), strict=True))
+        f = open_fmu(fmu).start(**starts, **values).step(float(bottom) + 1e-6)
         first = f.one("impact_count"), f.one("impact_time")
         assert first[0] == (depth < 0.0) and first[1] < bottom
         if depth < 0.0:
