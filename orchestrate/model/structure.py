@@ -37,6 +37,20 @@ ALTERNATIVES = {  # names that set the same value
 OF_HALVES = ("m1", "m2", "k1", "k2", "d1", "d2")
 
 
+def with_tabulated_fields(kind: type[Described]) -> type[Described]:
+    """Give a class fields for the parameters of the variable table that it does not write out."""
+    types, text, before = kind.__annotations__, kind.__doc__ or "", "    bonded : bool"
+    last = {name: types.pop(name) for name in FLAGS if name in types}
+    for name in [name for name in STRUCTURE if name not in types]:
+        quantity = STRUCTURE[name]
+        types[name] = "float"
+        setattr(kind, name, quantity.default)
+        meaning = f"    {name} : float\n        {quantity.description}, {quantity.unit}.\n"
+        text = text.replace(before, meaning + before, 1)
+    kind.__annotations__, kind.__doc__ = types | last, text
+    return kind
+
+
 def check_keywords(keywords: Mapping[str, Any], *known: str) -> None:
     """Raise ``InputError`` for a keyword that is neither known nor a parameter of the contact."""
     names = (*known, *(name for name in STRUCTURE if name not in OF_HALVES))
@@ -46,6 +60,7 @@ def check_keywords(keywords: Mapping[str, Any], *known: str) -> None:
 
 
 @dataclass(frozen=True, kw_only=True)
+@with_tabulated_fields
 class Structure(StructureText, Described):
     """Two masses on springs and dampers that touch without being glued (Figure 1 of the paper).
 

@@ -1,11 +1,14 @@
 """Parameters that the variable table has beside the paper's: what follows from the row of each."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 import orchestrate
 from orchestrate import InputError, Structure
 from orchestrate.cli.grammar import parse_changes
+from orchestrate.model import structure
 from orchestrate.model.ranges import ADDED, OF_LENGTH, STRUCTURE
 
 HALVES = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0}
@@ -59,3 +62,25 @@ def test_with_a_length_in_it_the_level_counts_and_scaling_it_too_does_not(name):
         for value, size in ((0.05, 1.0), (0.05, 2.0), (0.05 * 2.0**power, 2.0))
     )
     assert np.array_equal(same, 2.0 * one) and not np.allclose(other, 2.0 * one, rtol=1e-6)
+
+
+def test_a_row_of_the_table_makes_a_field(monkeypatch):
+    """What a class does not write out, between its numbers and its flags, documented."""
+
+    class Kind:
+        """Of a kind.
+
+        m1 : float
+        bonded : bool
+        """
+
+        m1: float = 1.0
+        bonded: bool = False
+
+    monkeypatch.setattr(structure, "STRUCTURE", {name: STRUCTURE[name] for name in ("m1", *ADDED)})
+    made = dataclasses.dataclass(structure.with_tabulated_fields(Kind))
+    assert [field.name for field in dataclasses.fields(made)] == ["m1", *ADDED, "bonded"]
+    assert all(getattr(made(), name) == STRUCTURE[name].default for name in ADDED)
+    assert all(
+        f"{name} : float\n        {STRUCTURE[name].description}" in made.__doc__ for name in ADDED
+    )
