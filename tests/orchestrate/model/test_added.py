@@ -8,7 +8,7 @@ import pytest
 import orchestrate
 from orchestrate import InputError, Structure
 from orchestrate.cli.grammar import parse_changes
-from orchestrate.model import structure
+from orchestrate.model import structure as module
 from orchestrate.model.ranges import ADDED, OF_LENGTH, STRUCTURE
 
 HALVES = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0}
@@ -77,8 +77,8 @@ def test_a_row_of_the_table_makes_a_field(monkeypatch):
         m1: float = 1.0
         bonded: bool = False
 
-    monkeypatch.setattr(structure, "STRUCTURE", {name: STRUCTURE[name] for name in ("m1", *ADDED)})
-    made = dataclasses.dataclass(structure.with_tabulated_fields(Kind))
+    monkeypatch.setattr(module, "STRUCTURE", {name: STRUCTURE[name] for name in ("m1", *ADDED)})
+    made = dataclasses.dataclass(module.with_tabulated_fields(Kind))
     assert [field.name for field in dataclasses.fields(made)] == ["m1", *ADDED, "bonded"]
     assert all(getattr(made(), name) == STRUCTURE[name].default for name in ADDED)
     assert all(
