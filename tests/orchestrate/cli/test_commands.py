@@ -108,7 +108,7 @@ ASKED = {  # command: options, a unit and what is printed in it, what is printed
     ),
     "jump-voltages": (
         f"--eta0 1.5:1.66 --one-way {DRIVEN} --rate 4e-4,3e-4",
-        *("", "jump at rate 0", (), {"rates": (4e-4, 3e-4), "voltage": (1.5, 1.66)}),
+        *("", "1.58.*by held voltages", (), {"rates": (4e-4, 3e-4), "voltage": (1.5, 1.66)}),
     ),
     "drive-branch": (
         "--speed 1.29:1.32 --longest 0.3 --jobs 1",
