@@ -83,8 +83,8 @@ def targeted_ziglang_command(program: str, platform: str) -> list[str]:
 def compile_command(platform: str) -> list[str]:
     compiler = own_compiler_command(platform)
     compiler = compiler or [*targeted_ziglang_command("cc", platform), *CLANG_FLAGS]
-    own = WINDOWS_FLAGS if platform.endswith("-windows") else ("-fPIC",)
-    return [*compiler, *FLAGS, *own, "-c"]
+    fixed = WINDOWS_FLAGS if platform.endswith("-windows") else ("-fPIC",)
+    return [*compiler, *FLAGS, *fixed, "-c"]
 
 
 def link_command(platform: str, title: str, objects: Iterable[str]) -> list[str]:

@@ -68,10 +68,10 @@ def compile_module() -> bytes:
         linked = [*compiler, *LINK_FLAGS, *exported, *objects, "-o", "kernel.wasm"]
         run_compiler(linked, place, "WebAssembly")
         require_unedited_sources()
-        text = bytes([len(SECTION)]) + (SECTION + module_guid()).encode()
-        assert len(text) < 128, "a length of one byte"
-        # 0: a custom section
-        return (Path(place) / "kernel.wasm").read_bytes() + bytes([0, len(text)]) + text
+        section = bytes([len(SECTION)]) + (SECTION + module_guid()).encode()
+        assert len(section) < 128, "a length of one byte"
+        custom = bytes([0, len(section)]) + section  # 0: a custom section
+        return (Path(place) / "kernel.wasm").read_bytes() + custom
 
 
 def compile_units(

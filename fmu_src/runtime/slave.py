@@ -176,9 +176,11 @@ class Slave:
         while the exception is set, and from Python 3.13 on an importer's callback written in
         Python fails then.
         """
-        logger, category = self.logger(), self.error_category()
-        if logger and logger.on and category in logger.categories():
-            logger.send(category, text)
+        logger = self.logger()
+        if logger and logger.on:
+            category = self.error_category()
+            if category in logger.categories():
+                logger.send(category, text)
 
     def error_category(self) -> str:
         logger = self.logger()

@@ -57,7 +57,8 @@ def run(program, fmu, *arguments, cwd, pure=False, env=None, timeout=300):
     else:
         done = forked([*call, json.loads(text)], environment, cwd, timeout)
     told = f"exit code {done.returncode}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
-    assert done.returncode == 0, told
+    assert done.returncode == 0 and "Traceback" not in done.stderr, told
+    assert call[0] != "importers" or "error" not in done.stderr.lower(), told
     (answer,) = (line[7:] for line in done.stdout.splitlines() if line.startswith("ANSWER "))
     return json.loads(answer)
 

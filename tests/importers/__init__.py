@@ -100,7 +100,8 @@ def compile_against(
     target = folder / f"{version}.exe"
     windows = any("windows" in word for word in command)
     libraries = [] if windows else ["-ldl", "-lpthread", "-lm"]
-    command = [*(command or c_compiler()), *WARNINGS, *options, f"-I{folder}", f"-I{HERE}"]
+    compiler = command or c_compiler() or ["cc"]
+    command = [*compiler, *WARNINGS, *options, f"-I{folder}", f"-I{HERE}"]
     files = [HERE / "importer.c", *programs]
     run_compiler([*command, "-o", target, *files, *libraries], folder)
     return target
@@ -181,7 +182,7 @@ def importer_with_sanitizer(
     program = compile_importer(
         version, path, folder / "importer", options=("-O1", "-g", *sanitizer)
     )
-    command = (*c_compiler(), "-fPIC", "-g", "-ffp-contract=off", *sanitizer)
+    command = (*(c_compiler() or ["cc"]), "-fPIC", "-g", "-ffp-contract=off", *sanitizer)
     optimised = (*command, "-c", "-O2", "-DINLINE=inline")
     kernel = compile_object(optimised, kernel_c_source(name), "kernel with a sanitizer")
     token, shim = native_form.native_fmu_guid(name, version), native_form.shim_sources(version)

@@ -2,6 +2,7 @@
 
 import functools
 import sys
+from importlib.util import find_spec
 from types import SimpleNamespace
 
 import pytest
@@ -9,14 +10,18 @@ import pytest
 from fmu_src.export import compiler
 from tests import importers
 
+from ..exports import refresh
 from ..fmu.driver import FMUS, OSCILLATOR, VERSIONS, path_of
 
 
 @pytest.fixture(scope="session")
 def fmus(exported):
     """The oscillator's FMUs by form; what can be made here and is not has ended the run before."""
-    if not all(path.exists() for path in FMUS.values()):
-        pytest.skip("ziglang is missing")
+    missing = [form for form, path in FMUS.items() if not path.exists()]
+    if missing:
+        reason = next(iter(refresh(exported).values()), "no reason given")
+        end = pytest.fail if find_spec("ziglang") else pytest.skip
+        end(f"cannot make {', '.join(missing)}: {reason}")
     return FMUS
 
 

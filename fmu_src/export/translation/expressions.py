@@ -131,6 +131,9 @@ class Expressions(ast.NodeVisitor, ABC):
         assert isinstance(value, Value)
         return value
 
+    def generic_visit(self, node: ast.AST) -> None:
+        raise self.refusal(node, ast.unparse(node), "numbers, slots, + - * / and calls")
+
     def visit_Tuple(self, node: ast.Tuple) -> Value:
         return self.make_tuple(self.translate_in_order(node.elts))
 

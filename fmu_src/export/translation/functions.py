@@ -108,10 +108,10 @@ class Body(Expressions):
     # -- statements --
 
     def generic_visit(self, node: ast.AST) -> None:
-        expected = "numbers, slots, + - * / and calls"
         if isinstance(node, ast.stmt):
             expected = "=, if, for, while, break, return or a call"
-        raise self.refusal(node, ast.unparse(node).splitlines()[0], expected)
+            raise self.refusal(node, ast.unparse(node).splitlines()[0], expected)
+        super().generic_visit(node)
 
     def visit_Break(self, node: ast.Break) -> None:
         self.write_line("break;")

@@ -76,10 +76,11 @@ Status refuse(Instance *instance, const char *call, const char *reason) {
 
 bool require_phase(Instance *instance, const char *call, int phases) {
     static const char *const names[] = {"instantiated", "initialization mode", "step mode", "event mode", "stopped after an error", "terminated"};
+    enum { PHASES = sizeof names / sizeof *names };
     if (!instance) return false;
     if (instance->state.phase & phases) return true;
-    const char *texts[13] = {""}, **next = texts + 1, *separator = "";
-    for (int i = 0; i < 6; i++) {
+    const char *texts[1 + 2 * PHASES] = {""}, **next = texts + 1, *separator = "";
+    for (int i = 0; i < PHASES; i++) {
         bool allowed = phases & 1 << i;
         if (instance->state.phase == 1 << i) texts[0] = names[i];
         *next++ = allowed ? separator : "";

@@ -11,10 +11,16 @@
 
 #include "names.h"
 
-#if defined(__GNUC__)  /* FMI passes more than this FMU needs */
+#if defined(FMI_STATUS)  /* the file has FMI's functions, which are passed more than this FMU needs */
+#if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 #elif defined(_MSC_VER)
 #pragma warning(disable : 4100)
+#endif
+
+/* A function that passes on to this file, which gets its name as `call`. */
+#define PASS_ON(NAME, PARAMETERS, EXPRESSION) \
+    FMI_STATUS NAME PARAMETERS { static const char *const call = #NAME; return c ? (FMI_STATUS)(EXPRESSION) : (FMI_STATUS)FAILED; }
 #endif
 
 #if defined(__GNUC__) && !defined(_WIN32)

@@ -1,15 +1,12 @@
 /* FMI 2.0 for co-simulation onto core.h. */
 #include <math.h>
 
+#define FMI_STATUS fmi2Status
 #include "core.h"
 #include "fmi2Functions.h"
 
 #define SETTABLE (INSTANTIATED | INITIALIZING | STEPPING)
 #define READABLE (INITIALIZING | STEPPING | STOPPED | TERMINATED)
-
-/* A function that passes on to core.h, which gets its name as `call`. */
-#define PASS_ON(NAME, PARAMETERS, EXPRESSION) \
-    fmi2Status NAME PARAMETERS { static const char *const call = #NAME; return c ? (fmi2Status)(EXPRESSION) : fmi2Error; }
 
 const char *const TYPE_NAMES[] = {"Real", "Integer", "Boolean"};
 

@@ -2,16 +2,13 @@
 #include <math.h>
 #include <string.h>
 
+#define FMI_STATUS fmi3Status
 #include "core.h"
 #include "fmi3Functions.h"
 
 #define SETTABLE (INSTANTIATED | INITIALIZING | STEPPING | EVENT)
 #define CALCULATED (INITIALIZING | STEPPING | EVENT | STOPPED | TERMINATED)
 #define READABLE (INSTANTIATED | CALCULATED)  /* start values, before anything is calculated */
-
-/* A function that passes on to core.h, which gets its name as `call`. */
-#define PASS_ON(NAME, PARAMETERS, EXPRESSION) \
-    fmi3Status NAME PARAMETERS { static const char *const call = #NAME; return c ? (fmi3Status)(EXPRESSION) : fmi3Error; }
 
 const char *const TYPE_NAMES[] = {"Float64", "Int32", "Boolean"};
 
@@ -260,30 +257,30 @@ PASS_ON(fmi3EnterConfigurationMode, (fmi3Instance c), refuse(c, call, NO_PARAMET
 PASS_ON(fmi3ExitConfigurationMode, (fmi3Instance c), refuse(c, call, NO_PARAMETERS))
 PASS_ON(fmi3EnterContinuousTimeMode, (fmi3Instance c), refuse(c, call, "this is co-simulation"))
 
-#define ABSENT(NAME, ...) PASS_ON(NAME, (fmi3Instance c, __VA_ARGS__), refuse(c, call, "not provided, as modelDescription.xml says"))
-ABSENT(fmi3GetNumberOfVariableDependencies, fmi3ValueReference reference, size_t *count)
-ABSENT(fmi3GetVariableDependencies, fmi3ValueReference dependent, size_t elements[], fmi3ValueReference independents[], size_t others[],
+#define ABSENT(NAME, ...) PASS_ON(fmi3##NAME, (fmi3Instance c, __VA_ARGS__), refuse(c, call, "not provided, as modelDescription.xml says"))
+ABSENT(GetNumberOfVariableDependencies, fmi3ValueReference reference, size_t *count)
+ABSENT(GetVariableDependencies, fmi3ValueReference dependent, size_t elements[], fmi3ValueReference independents[], size_t others[],
        fmi3DependencyKind kinds[], size_t count)
-ABSENT(fmi3GetDirectionalDerivative, const fmi3ValueReference unknowns[], size_t unknown_count, const fmi3ValueReference knowns[], size_t known_count,
+ABSENT(GetDirectionalDerivative, const fmi3ValueReference unknowns[], size_t unknown_count, const fmi3ValueReference knowns[], size_t known_count,
        const fmi3Float64 seed[], size_t seed_count, fmi3Float64 sensitivity[], size_t sensitivity_count)
-ABSENT(fmi3GetAdjointDerivative, const fmi3ValueReference unknowns[], size_t unknown_count, const fmi3ValueReference knowns[], size_t known_count,
+ABSENT(GetAdjointDerivative, const fmi3ValueReference unknowns[], size_t unknown_count, const fmi3ValueReference knowns[], size_t known_count,
        const fmi3Float64 seed[], size_t seed_count, fmi3Float64 sensitivity[], size_t sensitivity_count)
-ABSENT(fmi3GetIntervalDecimal, const fmi3ValueReference refs[], size_t count, fmi3Float64 intervals[], fmi3IntervalQualifier qualifiers[])
-ABSENT(fmi3GetIntervalFraction, const fmi3ValueReference refs[], size_t count, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
+ABSENT(GetIntervalDecimal, const fmi3ValueReference refs[], size_t count, fmi3Float64 intervals[], fmi3IntervalQualifier qualifiers[])
+ABSENT(GetIntervalFraction, const fmi3ValueReference refs[], size_t count, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
        fmi3IntervalQualifier qualifiers[])
-ABSENT(fmi3GetShiftDecimal, const fmi3ValueReference refs[], size_t count, fmi3Float64 shifts[])
-ABSENT(fmi3GetShiftFraction, const fmi3ValueReference refs[], size_t count, fmi3UInt64 counters[], fmi3UInt64 resolutions[])
-ABSENT(fmi3SetIntervalDecimal, const fmi3ValueReference refs[], size_t count, const fmi3Float64 intervals[])
-ABSENT(fmi3SetIntervalFraction, const fmi3ValueReference refs[], size_t count, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[])
-ABSENT(fmi3SetShiftDecimal, const fmi3ValueReference refs[], size_t count, const fmi3Float64 shifts[])
-ABSENT(fmi3SetShiftFraction, const fmi3ValueReference refs[], size_t count, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[])
-ABSENT(fmi3CompletedIntegratorStep, fmi3Boolean no_set_state_prior, fmi3Boolean *enter_event_mode, fmi3Boolean *terminate)
-ABSENT(fmi3SetTime, fmi3Float64 time)
-ABSENT(fmi3SetContinuousStates, const fmi3Float64 states[], size_t count)
-ABSENT(fmi3GetContinuousStateDerivatives, fmi3Float64 derivatives[], size_t count)
-ABSENT(fmi3GetEventIndicators, fmi3Float64 indicators[], size_t count)
-ABSENT(fmi3GetContinuousStates, fmi3Float64 states[], size_t count)
-ABSENT(fmi3GetNominalsOfContinuousStates, fmi3Float64 nominals[], size_t count)
-ABSENT(fmi3GetNumberOfEventIndicators, size_t *count)
-ABSENT(fmi3GetNumberOfContinuousStates, size_t *count)
-ABSENT(fmi3ActivateModelPartition, fmi3ValueReference clock, fmi3Float64 time)
+ABSENT(GetShiftDecimal, const fmi3ValueReference refs[], size_t count, fmi3Float64 shifts[])
+ABSENT(GetShiftFraction, const fmi3ValueReference refs[], size_t count, fmi3UInt64 counters[], fmi3UInt64 resolutions[])
+ABSENT(SetIntervalDecimal, const fmi3ValueReference refs[], size_t count, const fmi3Float64 intervals[])
+ABSENT(SetIntervalFraction, const fmi3ValueReference refs[], size_t count, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[])
+ABSENT(SetShiftDecimal, const fmi3ValueReference refs[], size_t count, const fmi3Float64 shifts[])
+ABSENT(SetShiftFraction, const fmi3ValueReference refs[], size_t count, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[])
+ABSENT(CompletedIntegratorStep, fmi3Boolean no_set_state_prior, fmi3Boolean *enter_event_mode, fmi3Boolean *terminate)
+ABSENT(SetTime, fmi3Float64 time)
+ABSENT(SetContinuousStates, const fmi3Float64 states[], size_t count)
+ABSENT(GetContinuousStateDerivatives, fmi3Float64 derivatives[], size_t count)
+ABSENT(GetEventIndicators, fmi3Float64 indicators[], size_t count)
+ABSENT(GetContinuousStates, fmi3Float64 states[], size_t count)
+ABSENT(GetNominalsOfContinuousStates, fmi3Float64 nominals[], size_t count)
+ABSENT(GetNumberOfEventIndicators, size_t *count)
+ABSENT(GetNumberOfContinuousStates, size_t *count)
+ABSENT(ActivateModelPartition, fmi3ValueReference clock, fmi3Float64 time)

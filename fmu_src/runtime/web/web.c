@@ -1,6 +1,7 @@
 /* What a web page calls besides the loops, with the prefix of a model: an instance of the FMU, as fmi.h has it, and its last message. */
 #include <string.h>
 
+#define FMI_STATUS fmi3Status
 #include "core.h"
 #include "fmi.h"
 #include "fmi3Functions.h"
