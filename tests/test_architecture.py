@@ -152,6 +152,14 @@ def test_a_floor_knows_only_those_below(root, below):
             assert known <= below.get(mine, set()) | {mine, "" if root == "fmu_src" else mine}, file
 
 
+def test_running_knows_fmus_by_their_type_alone():
+    for file in (file for file in FILES if file.startswith("orchestrate/running/")):
+        body = tree_of(file).body
+        parts = [one for one in body if not ast.unparse(one).startswith("if TYPE_CHECKING:")]
+        nodes = (node for one in parts for node in ast.walk(one))
+        assert not {n for n in imports(nodes, file) if n.startswith("orchestrate.fmu.")}, file
+
+
 def test_who_knows_the_sources_of_the_fmus_and_the_tests():
     assert not {file for file in users("orchestrate") if file.startswith("fmu_src/")}
     assert users("tests") == {"tools/benchmark.py"}  # its host in C is an importer of tests

@@ -87,7 +87,7 @@ def test_hostile_measurements_are_read_or_refused_in_one_line(
         arguments = measurements.reading(kind, draw)
         fate, problem = attack(path, kind, arguments)
         path.unlink()
-        strays = [one for one in (*folder.iterdir(), ran) if one.exists() and one not in before]
+        strays = [one for one in folder.iterdir() if one not in before] + [ran] * ran.exists()
         texts = [*capfd.readouterr(), *(one.getMessage() for one in caplog.records)]
         caplog.clear()
         problem = problem or (f"left {strays}" if strays else "")

@@ -4,11 +4,13 @@ import os
 import signal
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 
 import pytest
 
-from orchestrate.files import HeldLock, write_atomically
+from orchestrate.files import HeldLock, find_or_make, write_atomically
 from tests import ROOT
 
 WRITE = """
@@ -98,6 +100,32 @@ def test_a_lock_whose_file_was_removed_is_not_the_one_of_the_next(tmp_path):
     with pytest.raises(BlockingIOError):
         HeldLock(tmp_path / "lock")
     second.release()
+
+
+def test_two_that_miss_a_file_make_it_once(tmp_path):
+    path, made, both = tmp_path / "a", [], threading.Barrier(2)
+
+    def make():
+        made.append(path)
+        time.sleep(0.05)
+        path.touch()
+
+    def ask():
+        looks = iter((both.wait, int))  # both look before either makes it
+
+        def is_usable(one):
+            there = one.exists()
+            next(looks)()
+            return there
+
+        assert find_or_make([path], is_usable, make) == path
+
+    threads = [threading.Thread(target=ask) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert made == [path]
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")

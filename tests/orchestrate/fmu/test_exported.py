@@ -146,7 +146,7 @@ REFUSED = {
     f"form fmi4: {FORM}": lambda: find_or_export(OSCILLATOR, "fmi4"),
     f"model Shaker: {MODEL}": lambda: build(names=["Shaker"]),
     f"model Motor: {MODEL}": lambda: make_fmu_finder({"fmu": {"Motor": "a.fmu"}}),
-    "no.fmu: no such file; exp": lambda: make_fmu_finder({"fmu": "no.fmu"})(OSCILLATOR),
+    "FMU no.fmu: no such file; expected": lambda: make_fmu_finder({"fmu": "no.fmu"})(OSCILLATOR),
 }
 
 

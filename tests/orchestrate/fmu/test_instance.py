@@ -1,6 +1,8 @@
 """What is set is what is read, errors are the FMU's words, states come back bit by bit."""
 
 import math
+import shutil
+import sys
 
 import numpy as np
 import pytest
@@ -8,6 +10,8 @@ import pytest
 from orchestrate.errors import FmuError, InputError
 from orchestrate.fmu import REST, STATE, EventInstance, Instance, start_motion
 from orchestrate.model import Excitation, Structure
+
+from .misbehaving import misbehaving
 
 CHAOS = {"box_amplitude": 1.0 / 1.2**2, "box_frequency": 1.2}
 VALUES = ("x1", "x2", "v1", "v2", "x_rel", "x_rel_max", "impact_time", "impact_energy", "phase")
@@ -46,6 +50,16 @@ def test_errors_are_the_fmus_words_in_one_line(instance):
         with pytest.raises(FmuError, match=words) as error:
             call()
         assert "\n" not in str(error.value)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the bad FMU is made for Linux")
+def test_numbers_that_are_none_are_refused(event_fmu, tmp_path):
+    if shutil.which("cc") is None and shutil.which("gcc") is None:
+        pytest.importorskip("ziglang")
+    with Instance(misbehaving(event_fmu, tmp_path / "bad.fmu", "NaN")) as instance:
+        instance.initialize()
+        with pytest.raises(FmuError, match="answers x1 = nan; expected a finite number"):
+            instance.get("x1", "x2")
 
 
 def test_a_restored_state_gives_the_same_bits(instance, any_fmu):

@@ -102,6 +102,15 @@ def test_what_cannot_be_unpacked_leaves_nothing(used_fmu, tmp_path, monkeypatch)
     assert set(process_temporary_folder().iterdir()) == before
 
 
+def test_an_fmu_that_changes_after_it_was_described_is_refused(oscillator_in, tmp_path):
+    good = oscillator_in("fmi3")
+    fmu = altered_fmu(good, tmp_path / "mine.fmu", version=(VERSION, "0.1.4"))
+    description = describe(fmu)
+    fmu.write_bytes(good.read_bytes())
+    with pytest.raises(InputError, match="it has changed since it was read; expected"):
+        unpack_once(description)
+
+
 REFUSED = ("path traversal", "link", "bomb", "crowd of files", "a name twice", "no FMU")
 
 
@@ -113,9 +122,8 @@ def good(exported):
 @pytest.mark.parametrize("kind", REFUSED[:-1])
 def test_an_enemys_archive_is_refused_in_a_line(good, tmp_path, monkeypatch, kind):
     monkeypatch.setattr("orchestrate.fmu.description.MAX_BYTES", 1 << 24)
-    monkeypatch.setattr("orchestrate.fmu.description.MAX_FILES", 1000)
     monkeypatch.setattr(archives, "BOMB", 1 << 25)
-    monkeypatch.setattr(archives, "CROWD", 1001)
+    monkeypatch.setattr(archives, "CROWD", 10_001)  # more than MAX_FILES
     for seed in range(1 if kind in ("bomb", "crowd of files") else 2):
         archives.write(kind, good, tmp_path / "bad.fmu", random.Random(seed))
         with pytest.raises(InputError, match="not readable as an FMU"):

@@ -16,6 +16,10 @@ from orchestrate.model.structure import Structure
 QUICK = Structure.from_file("quick"), orchestrate.Drive.from_file("quick")
 
 
+def test_an_error_is_a_printable_line():
+    assert str(InputError("one\ntwo\x1b[2J")) == r"one\ntwo\x1b[2J"
+
+
 @pytest.mark.parametrize("value", [True, np.True_, 2.0, "2", None, 0, MAX_COUNT + 1, np.nan])
 def test_what_is_no_integer_of_the_range_is_refused(value):
     expected = f"expected a whole number from 1 to {MAX_COUNT}"

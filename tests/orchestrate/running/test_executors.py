@@ -15,6 +15,7 @@ from orchestrate.errors import InputError, WorkerError
 from orchestrate.fmu import OSCILLATOR
 from orchestrate.running import cluster, runner
 from orchestrate.running.executors import compute_chunk
+from orchestrate.running.identity import digests_of_code
 from orchestrate.running.runner import compute_dataset
 from tests import ROOT
 
@@ -67,6 +68,22 @@ def test_a_worker_with_other_sources_computes_nothing():
     with pytest.raises(WorkerError, match=r"other sources \(orchestrate/version\.py\)"):
         compute_chunk(JOB, {}, [1], None, (), {"orchestrate.version": "other"})
     assert compute_chunk(JOB, {}, [3], None, (), None)[1]["square"] == [9.0]
+
+
+def test_workers_elsewhere_get_the_fmu_s_bytes_and_the_sources(find):
+    sent = []
+
+    class Recording(ThreadPoolExecutor):
+        def submit(self, fn, *arguments):
+            sent.append(arguments)
+            return super().submit(fn, *arguments)
+
+    with Recording(1) as executor:
+        compute_dataset(JOB, {"cluster": executor, "jobs": 1}, find)
+    for _, fmus, *_, code in sent:
+        assert all(isinstance(fmu, bytes) for fmu in fmus.values())
+        assert code == digests_of_code(Squares.__module__)
+    assert sent
 
 
 def test_an_fmu_of_somebody_else_runs_in_a_process(find, monkeypatch, tmp_path):

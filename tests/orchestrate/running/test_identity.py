@@ -58,6 +58,11 @@ def test_an_edit_of_what_decides_numbers_is_seen_and_no_other(ours, file, text, 
     assert line == (f"{told} changed since" if told else "")
 
 
+def test_the_kernel_behind_an_answer_is_among_its_sources():
+    digests = digests_of_code("orchestrate.response.multiplicity")
+    assert "fmu_src.kernels.repetition" in digests
+
+
 def test_a_long_list_is_told_by_its_ends_and_a_digest():
     etas = np.arange(100, 8001) / 1000.0
     told = to_json_data(tuple(etas))
