@@ -62,13 +62,17 @@ def replace_variable_table(page: str, reference: Reference, table: str) -> str:
     return f"{head}{begin}\n{table}{end}{tail}"
 
 
+def columns_of(rows: Sequence[Sequence[float]], names: Sequence[str]) -> dict[str, np.ndarray]:
+    return dict(zip(("time", *names), np.array(rows, dtype=float).T, strict=True))
+
+
 def simulate_oscillator_example(fmu: str | PathLike[str]) -> dict[str, np.ndarray]:
     names, eta = ("x1", "x2", "x_rel", "in_contact"), 0.4
     period = 2.0 * math.pi / eta
     times = [0.0, *(500 * period + np.linspace(0.0, 2 * period, 600))]
     box = {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
     rows = run_and_record(fmu, times, names, lambda _: {}, **box)[1:]
-    return dict(zip(("times", *names), np.array(rows, dtype=float).T, strict=True))
+    return columns_of(rows, names)
 
 
 def simulate_shaker_limits(fmu: str | PathLike[str]) -> dict[str, np.ndarray]:
@@ -76,7 +80,7 @@ def simulate_shaker_limits(fmu: str | PathLike[str]) -> dict[str, np.ndarray]:
     coil = {"coil_inductance": 0.02, "voltage_limit": 5.0, "current_limit": 1.0}
     times = np.linspace(0.0, 1.5, 801).tolist()
     rows = run_and_record(fmu, times, names, growing_sine_command, **coil)[1:]
-    return dict(zip(("times", *names), np.array(rows, dtype=float).T, strict=True))
+    return columns_of(rows, names)
 
 
 def growing_sine_command(time: float, frequency: float = 40.0) -> dict[str, float]:
@@ -94,7 +98,7 @@ def draw_and_save_documentation(
     tight: Any = {"dpi": 100, "bbox_inches": "tight"}
     if reference is MOTOR_SHAKER:
         scheme, image = shaker.draw_shaker(), icon.draw_motor_icon()
-        values = dict(zip(("time", *reference.outputs), np.array(rows).T, strict=True))
+        values = columns_of(rows, reference.outputs)
         plot = shaker.draw_run_up(values["time"], values["speed"], values["box_position"])
     elif reference is COIL:
         scheme, image = electrodynamic_shaker.draw_shaker(), icon.draw_coil_icon()

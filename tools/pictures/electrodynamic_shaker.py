@@ -45,7 +45,7 @@ def draw_limited_run(values: dict[str, np.ndarray]) -> Figure:
     """Draw voltage, current and position over time, shaded where a limit acts."""
     figure, panels = make_panels(3, 1, (9, 6), sharex=True)
     electric = ("voltage", "$u$ in V", 1.0), ("current", "$i$ in A", 1.0)
-    rows, times = (*electric, ("box_position", "$y$ in mm", 1e3)), values["times"]
+    rows, times = (*electric, ("box_position", "$y$ in mm", 1e3)), values["time"]
     for axes, (name, label, scale) in zip(panels, rows, strict=True):
         axes.plot(times, scale * values[name], "k", lw=0.9)
         low, high = axes.get_ylim()

@@ -69,7 +69,7 @@ def draw_scheme(width: float = 4.8) -> Figure:
 @styled
 def draw_example(values: Mapping[str, np.ndarray]) -> Figure:
     figure, (top, bottom) = make_panels(2, 1, (9, 5), sharex=True)
-    times = values["times"]
+    times = values["time"]
     top.plot(times, values["x1"], label=r"$\xi_1$")
     top.plot(times, values["x2"], label=r"$\xi_2$", ls="--")
     bottom.plot(times, values["x_rel"], "k", label=r"$\xi_{Rel}$")
