@@ -11,7 +11,6 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from functools import reduce
-from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 from .constants import GRAVITY, TURN
@@ -171,7 +170,10 @@ def parameter_of(data: xr.Dataset, name: str, default: float | None = None) -> A
 
 
 def is_finite_number(value: Any) -> bool:
-    return isinstance(value, Real) and math.isfinite(value)
+    try:
+        return not isinstance(value, str) and math.isfinite(value)
+    except TypeError:
+        return False
 
 
 def excitation_period_of(data: xr.Dataset) -> float:

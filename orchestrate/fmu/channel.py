@@ -63,7 +63,7 @@ class Channel:
 
     def set_inputs(self, *values: float) -> None:
         """Set the FMU's inputs in the order of the constructor; fewer values: the first ones."""
-        self.instance.set(**dict(zip(self.inputs, values, strict=False)))
+        self.instance.set(**dict(zip(self.inputs[: len(values)], values, strict=True)))
 
     def get_outputs(self) -> list[float]:
         """Return the FMU's outputs in the order of the constructor; raise unless all are finite."""

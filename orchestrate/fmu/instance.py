@@ -104,20 +104,17 @@ class Instance:
     def _prepare_run(self) -> None:
         """Prepare the calls that initialise, step and reset; FMI 3.0 needs no setup before."""
         prefix, flag = ("fmi3", c_bool) if self.is_fmi3 else ("fmi2", c_int)
-        setup = (
-            flag(False),
-            c_double(),
-            self._start,
-            flag(False),
-            c_double(),
-        )  # no tolerance, no end
-        enter, leave = "EnterInitializationMode", "ExitInitializationMode"
-        begin: dict[str, tuple[Any, ...]] = {"SetupExperiment": setup, enter: (), leave: ()}
+        none = flag(False), c_double()  # no tolerance; no end
+        names = ["EnterInitializationMode", "ExitInitializationMode"]
         results: list[Any] = []
         if self.is_fmi3:
-            begin = {enter: setup, leave: ()} | ({"EnterStepMode": ()} if self.EVENTS else {})
+            names += ["EnterStepMode"] if self.EVENTS else []
             results = [*(byref(c_bool()) for _ in range(3)), byref(c_double())]
-        self._initialize = [self.prepare_call(f"{prefix}{name}", *begin[name]) for name in begin]
+        else:
+            names = ["SetupExperiment", *names]
+        first, *rest = (f"{prefix}{name}" for name in names)
+        self._initialize = [self.prepare_call(first, *none, self._start, *none)]
+        self._initialize += [self.prepare_call(name) for name in rest]
         self._reset = self.prepare_call(f"{prefix}Reset")
         step = self._time, self._length, flag(True), *results
         self._step = self.prepare_call(f"{prefix}DoStep", *step)

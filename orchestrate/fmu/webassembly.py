@@ -57,7 +57,10 @@ def find_or_compile_web_kernel(folder: str | PathLike[str] | None = None) -> Web
     except CannotExport as reason:
         text = f"{FILE.name}: none matches the current sources, and none can be built here"
         raise InputError(f"{text}: {reason}") from None
-    return WebKernel(path.read_bytes(), variables, guid)
+    module = path.read_bytes()
+    if sources.guid_inside_module(module) != guid:
+        raise InputError(f"{path}: it has changed since it was read; expected a file that stays")
+    return WebKernel(module, variables, guid)
 
 
 def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:

@@ -120,22 +120,22 @@ class Section:
             if key not in self.values:
                 raise self.error(key, f"missing; expected all of {', '.join(keys)}")
 
-    def number(self, key: str) -> float:
+    def checked_value(self, key: str) -> float:
         """Return a key's number or flag; raise ``InputError`` if it is none or out of range."""
-        check: Callable[[Any], float] = partial(checked_flag, key)
-        check = QUANTITIES[key].check if key in QUANTITIES else check
+        is_flag = key in (*FLAGS, "current_control")
+        check = partial(checked_flag, key) if is_flag else QUANTITIES[key].check
         try:
             return check(self.values[key])
         except InputError as error:
             raise InputError(f"{self.path}: {self.name}.{error}") from None
 
-    def present_numbers(self, keys: Collection[str]) -> dict[str, float]:
-        return {key: self.number(key) for key in self.present_keys(keys)}
+    def present_values(self, keys: Collection[str]) -> dict[str, float]:
+        return {key: self.checked_value(key) for key in self.present_keys(keys)}
 
     def rad_s(self, key: str) -> float:
         """Return a key's frequency in rad/s, converted from the unit that its name ends in."""
         unit = next(unit for unit in TO_RAD_S if key.endswith(f"_{unit}"))
-        return TO_RAD_S[unit](self.number(key))
+        return TO_RAD_S[unit](self.checked_value(key))
 
     def construct(self, maker: Callable[[], Described]) -> Described:
         """Return ``maker()``; an ``InputError`` from it is raised again with file and section."""
@@ -150,25 +150,25 @@ def read_structure(section: Section) -> Structure:
         own = {OF_ONE_MASS.get(key, key): value for key, value in section.values.items()}
         section = replace(section, values=own)
     section.allow_only(*COMMON_NUMBERS, *FLAGS, "preload", *MECHANICS, *MODAL_KEYS, *RATIO_KEYS)
-    values: dict[str, Any] = section.present_numbers((*COMMON_NUMBERS, *FLAGS))
+    values: dict[str, Any] = section.present_values((*COMMON_NUMBERS, *FLAGS))
     if section.at_most_one(("clearance", "preload")) == "preload":
-        values["clearance"] = -section.number("preload")
+        values["clearance"] = -section.checked_value("preload")
     if section.present_keys(MODAL_KEYS):
         section.uses_second_form(MODAL_KEYS, (*MECHANICS[2:], *RATIO_KEYS))
         if wall := values.get("wall", False):
             for key in section.present_keys(("m2", "f2_hz", "zeta2")):
                 raise section.error(key, "mass 2 is a wall; expected it left out")
         section.require_all(("f1_hz", "zeta1") if wall else ("m1", "m2", *MODAL_KEYS))
-        values |= section.present_numbers(("m1", "m2", *MODAL_KEYS))
+        values |= section.present_values(("m1", "m2", *MODAL_KEYS))
         values = {key.removesuffix("_hz"): value for key, value in values.items()}
         construct = Structure().replace if wall else Structure.from_halves
         return section.construct(lambda: construct(**values))
     if not section.uses_second_form(MECHANICS[1:], RATIO_KEYS):
-        values |= section.present_numbers(MECHANICS)
+        values |= section.present_values(MECHANICS)
         return section.construct(lambda: Structure(**values))
     if section.uses_second_form(("D",), ("D1", "D2")):
         section.require_all(("D1", "D2"))
-    values |= section.present_numbers(("m1", "mu", "kappa", "D", "D1", "D2"))
+    values |= section.present_values(("m1", "mu", "kappa", "D", "D1", "D2"))
     omega = section.at_most_one(OMEGAS)
     if omega:
         values["omega"] = section.rad_s(omega)
@@ -179,9 +179,9 @@ def read_excitation(section: Section, structure: Structure | None) -> Excitation
     section.allow_only(*FREQUENCIES, *AMPLITUDES, "phase", *PUSHES)
     key = section.exactly_one(FREQUENCIES)
     amplitude_key = section.at_most_one(AMPLITUDES)
-    more = section.present_numbers(("phase", *PUSHES))
+    more = section.present_values(("phase", *PUSHES))
     if key == "eta":
-        eta = section.number("eta")
+        eta = section.checked_value("eta")
         if structure is None:
             raise section.error("eta", "it refers to a structure; expected a section [structure]")
         if amplitude_key is None:
@@ -189,7 +189,7 @@ def read_excitation(section: Section, structure: Structure | None) -> Excitation
         frequency = eta * structure.omega
     else:
         frequency = section.rad_s(key)
-    amplitude = section.number(section.exactly_one(AMPLITUDES))
+    amplitude = section.checked_value(section.exactly_one(AMPLITUDES))
     if amplitude_key == "acceleration_g":
         amplitude = amplitude * GRAVITY / (frequency * frequency)
     return section.construct(lambda: Excitation(frequency=frequency, amplitude=amplitude, **more))
@@ -205,19 +205,19 @@ def read_drive(motor: Section, box: Section, structure: Structure | None) -> Dri
         raise InputError(f"{box.path}: [box] with a {form} [motor]: expected {kind}")
     if not by_numbers:
         box.require_all(SI_BOX)
-        return read_si_drive(motor, box.present_numbers(SI_BOX))
+        return read_si_drive(motor, box.present_values(SI_BOX))
     motor.require_all(MOTOR_NUMBERS)
     box.require_all(BOX_NUMBERS)
     if structure is None:
         raise motor.error("beta", "it refers to a structure; expected a section [structure]")
-    numbers = {**motor.present_numbers(MOTOR_NUMBERS), **box.present_numbers(BOX_NUMBERS)}
+    numbers = {**motor.present_values(MOTOR_NUMBERS), **box.present_values(BOX_NUMBERS)}
     return motor.construct(lambda: Drive.nondimensional(**numbers, structure=structure))
 
 
 def read_shaker(section: Section) -> Shaker:
     keys = (*SHAKER_SI, *SHAKER_COMMON, "current_control", *DATASHEET)
     section.allow_only(*keys)
-    values: dict[str, Any] = section.present_numbers(keys)
+    values: dict[str, Any] = section.present_values(keys)
     section.require_all(("force_factor", "coil_resistance"))
     if section.uses_second_form(SHAKER_SI, DATASHEET):
         needed = "rated_force", "moving_mass", "suspension_resonance", "amplifier_power"
@@ -236,12 +236,12 @@ def check_m1_given(structure: Section, motor: Section) -> None:
 
 
 def read_si_drive(motor: Section, box: dict[str, float]) -> Drive:
-    values = {**motor.present_numbers(SI_MOTOR), **box}
+    values = {**motor.present_values(SI_MOTOR), **box}
     if not motor.uses_second_form(TORQUE_LINE_KEYS, DATASHEET_KEYS):
         motor.require_all([name for name in SI_MOTOR if name != "armature_inductance"])
         return motor.construct(lambda: Drive(**values))
     motor.require_all(("rated_voltage", "stall_torque", "unbalance_mass", "unbalance_radius"))
     speed = motor.rad_s(motor.exactly_one(SPEEDS))
     motor.exactly_one(("rotor_inertia", "mechanical_time_constant"))
-    values |= motor.present_numbers(("rated_voltage", "stall_torque", "mechanical_time_constant"))
+    values |= motor.present_values(("rated_voltage", "stall_torque", "mechanical_time_constant"))
     return motor.construct(lambda: Drive.from_datasheet(**values, no_load_speed=speed))

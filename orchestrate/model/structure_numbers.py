@@ -211,11 +211,11 @@ class StructureNumbers:
             given.get(name, getattr(self, name)) for name in ("omega", "mu", "kappa", "D1", "D2")
         )
         k1 = self.m1 * omega**2 if "omega" in given else self.k1
-        changed = {  # by what changes it
-            ("omega",): {"k1": k1},
-            ("mu",): {"m2": mu * self.m1},
-            ("kappa", "omega"): {"k2": kappa * k1},
-            ("D1", "omega"): {"d1": damping_from_ratio(D1, omega, self.m1)},
-            ("D2", "mu", "omega"): {"d2": damping_from_ratio(D2, omega, self.m1) * mu},
+        values = {  # by name: what it is, and what changes it
+            "k1": (k1, {"omega"}),
+            "m2": (mu * self.m1, {"mu"}),
+            "k2": (kappa * k1, {"kappa", "omega"}),
+            "d1": (damping_from_ratio(D1, omega, self.m1), {"D1", "omega"}),
+            "d2": (damping_from_ratio(D2, omega, self.m1) * mu, {"D2", "mu", "omega"}),
         }
-        return {k: v for by, new in changed.items() if given.keys() & by for k, v in new.items()}
+        return {name: value for name, (value, by) in values.items() if given.keys() & by}

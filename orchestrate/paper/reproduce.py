@@ -42,9 +42,10 @@ def reproduce(
     make_writable_folder(output)
     data = Datasets(output, resolution, running)
     checked = check_and_write_claims(data) if CLAIMS in parts else {"claims": [], "regions": []}
+    shown = {name: PARTS[name].results(data) for name in parts if name != CLAIMS}
     pictures = {}
-    for name in (part for part in parts if part != CLAIMS):
-        figure = PARTS[name].draw(*PARTS[name].results(data))
+    for name, results in shown.items():
+        figure = PARTS[name].draw(*results)
         pictures[name] = save(figure, output / picture_file_stem(name), ("png", "pdf"))[0]
     return Reproduction(checked, pictures, write_report(output, pictures, checked, resolution, fmu))
 

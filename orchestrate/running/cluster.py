@@ -43,8 +43,8 @@ def dask_workers(client: Any) -> Iterator[Workers]:
     except BaseException as error:
         with suppress(Exception):
             executor.shutdown(wait=False)
-        is_refused = isinstance(error, (OSError, CancelledError, asyncio.CancelledError))
-        lost = is_refused or client.status != "running"
+        of_connection = OSError, CancelledError, asyncio.CancelledError
+        lost = isinstance(error, of_connection) or client.status != "running"
         if lost and not isinstance(error, (VibroimpactError, KeyboardInterrupt)):
             raise WorkerError(f"the scheduler of the cluster has ended; {RESUMES}") from None
         if type(error).__name__ == "KilledWorker":

@@ -104,6 +104,7 @@ class Journal:
         return checksum_of_parts(self._identity_text, str(index).encode(), data)
 
     def keep_intact_chunks(self) -> set[int]:
+        """Delete chunks with a wrong checksum; return the numbers of the others."""
         numbers = {index for (index,) in self._query("SELECT i FROM chunks")}
         for index in sorted(numbers):  # one after the other: together they may not fit in memory
             if not self._verified_data(index):

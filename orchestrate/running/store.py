@@ -221,6 +221,7 @@ class DiskStore(Store):
         return self._result
 
     def close(self) -> None:
+        """Close the journal, delete it if empty, and release the lock on the result."""
         if self._journal is not None:
             with suppress(StoreError):
                 if self._journal.is_empty():

@@ -14,6 +14,7 @@ def seed(request: pytest.FixtureRequest) -> int:
 
 @pytest.fixture
 def budget(request: pytest.FixtureRequest) -> int:
+    """Number of units to do: of the option, or of the campaign's mark."""
     default = request.node.get_closest_marker("budget").args[0]
     return int(request.config.getoption("--budget") or default)
 

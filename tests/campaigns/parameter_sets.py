@@ -80,6 +80,7 @@ def draw_ordinary(rng: Chance) -> Values:
 
 
 def make_nearly_equal(rng: Chance, values: Values) -> None:
+    """Change values to nearly equal oscillators with almost lossless impacts."""
     differs = [rng.perhaps() * rng.sign() * rng.power(-17.0, -2.0) for _ in range(2)]
     values["k2"] = values["k1"] * values["m2"] / values["m1"] * (1.0 + differs[0])
     values["d2"] = values["d1"] * values["m2"] / values["m1"] * (1.0 + differs[1])
@@ -104,6 +105,7 @@ def make_any_start_size(rng: Chance, values: Values) -> None:
 
 
 def make_small_start(rng: Chance, values: Values) -> None:
+    """Change start values to nearly rest with closed gap, under an ordinary drive."""
     values["x1_start"] = values["x2_start"] = rng.perhaps() * rng.power(-20.0, 0.0)
     values["v1_start"] = rng.perhaps() * rng.power(-20.0, 0.0)
     values["v2_start"] = values["v1_start"] + rng.perhaps() * rng.power(-20.0, 0.0)
@@ -119,6 +121,7 @@ def make_large_gamma(rng: Chance, values: Values) -> None:
 
 
 def make_overdamped(rng: Chance, values: Values) -> None:
+    """Change the dampers to about and far beyond critical."""
     for name, mass, stiffness in (("d1", "m1", "k1"), ("d2", "m2", "k2")):
         critical = 2.0 * math.sqrt(values[mass] * values[stiffness])
         factor = 1.0 + rng.sign() * rng.power(-16.0, -3.0)

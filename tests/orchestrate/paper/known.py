@@ -22,8 +22,11 @@ def known(windows=None, **answers):
     """Datasets whose methods answer as told, whatever their arguments, and never compute."""
     data = Datasets(Path("nowhere"), FULL, {})
     limits = {**WINDOWS, **(windows or {})}
-    window = lambda orbit: StableWindow(*limits.get(orbit, (1.0, 1.3)), "fold", "fold")  # noqa: E731
-    data.windows_of_branch = lambda case, orbit: [window(orbit)]
+
+    def windows_of_branch(case, orbit):
+        return [StableWindow(*limits.get(orbit, (1.0, 1.3)), "fold", "fold")]
+
+    data.windows_of_branch = windows_of_branch
     data.get_or_compute = lambda name, *_, **__: pytest.fail(f"{name}: would be computed")
     for name, answer in answers.items():
         setattr(data, name, answer if callable(answer) else lambda *_, answer=answer: answer)
