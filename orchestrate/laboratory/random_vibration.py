@@ -16,7 +16,7 @@ from ..model.ranges import Quantity
 from . import signals
 from .pieces import ERROR, POINTS, Floats, Pieces, max_phase_step
 
-RMS = Quantity("rms", "m/s2", "", 1e-12, 1e12)
+RMS = Quantity("rms", "m/s2", "", 1e-120, 1e12)  # its square over that of any profile is above 0
 
 
 @dataclass(frozen=True, kw_only=True)

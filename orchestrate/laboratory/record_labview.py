@@ -40,6 +40,9 @@ def read_lvm(path: Path) -> Columns:
     channels = int(segment.get("Channels", 0))
     if named < channels:
         raise InputError(f"{path}: names of {named} channels; expected {channels}, as stated above")
+    if len(names) < rows.shape[1]:
+        text = f"{rows.shape[1]} columns below {len(names)} names"
+        raise InputError(f"{path}: {text}; expected a .lvm file that is whole")
     units = ["s"] * has_time + list(map(str, segment.get("Y_Unit_Label", [])))
     names[:1] = ["time"] if has_time else names[:1]
     columns = [

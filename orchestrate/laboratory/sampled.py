@@ -37,7 +37,10 @@ class Sampled(ExcitationSignal):
     def __post_init__(self) -> None:
         put = object.__setattr__
         check_and_convert_fields(self)
-        values = checked_finite_list("acceleration", self.acceleration)
+        try:
+            values = checked_finite_list("acceleration", self.acceleration)
+        except InputError as error:
+            raise InputError(f"{error}, in m/s2, at most {MOST_PIECES} of them") from None
         if len(values) > MOST_PIECES:
             text = f"{len(values)} values; expected a list of at most {MOST_PIECES} numbers"
             raise InputError(f"acceleration: {text}")

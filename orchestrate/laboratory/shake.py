@@ -15,7 +15,7 @@ from ..errors import InputError
 from ..fmu import OSCILLATOR, PLAYED, Player
 from ..lazy import Unpack, xr
 from ..model import Excitation, Shaker, Structure
-from ..model.arguments import Number, checked_number, checked_positive
+from ..model.arguments import Number, checked_positive, checked_unmasked
 from ..model.ranges import PUSHES
 from ..response.equations import absolute_accelerations_by_forces
 from ..response.labels import make_dataset, variable, yes_or_no
@@ -27,7 +27,7 @@ from ..running.options import Running
 from .level_control import LevelControl, shake_on_shaker
 from .pieces import Pieces
 from .record import CHANNELS, FORCES, unit_of_channel
-from .signals import ExcitationSignal
+from .signals import ExcitationSignal, is_stated
 
 BOX = "box_acceleration"
 MOST_SAMPLES = 100_000_000
@@ -244,10 +244,11 @@ def shake(
         text = f"expected at most {MOST_SAMPLES / excitation.duration:.3g} for that duration"
         raise InputError(f"sample_rate = {rate!r} Hz: {text}")
     start = checked_state("start", start, checked_structure(structure))
-    frequency = checked_number("frequency", frequency)
-    beside = Excitation(frequency=frequency or structure.omega, amplitude=0.0, **pushes)
+    frequency = checked_unmasked("frequency", frequency)
+    own = frequency if is_stated(frequency) else structure.omega
+    beside = Excitation(frequency=own, amplitude=0.0, **pushes)
     for force in FORCES:
-        if (value := getattr(beside, force)) and not frequency:
+        if (value := getattr(beside, force)) and not is_stated(frequency):
             text = "without its frequency; expected frequency= too"
             raise InputError(f"{force} = {value!r}: {text}")
     if beside.force2 or excitation.drives == "force2":

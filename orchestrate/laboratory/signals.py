@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from ..constants import TURN
 from ..errors import NOT_NUMBERS, InputError
-from ..model.ranges import Quantity
+from ..model.ranges import Quantity, as_scalar
 from .pieces import Floats, Pieces
 
 Profile = tuple[tuple[float, float], ...]  # frequency in Hz and what holds there, ascending
@@ -36,8 +36,9 @@ def checked_quantity(quantity: Quantity, name: str, value: object) -> float:
 
 
 def is_stated(value: object) -> bool:
-    """Return whether an argument is given: neither None nor the number 0."""
-    return value is not None and not (isinstance(value, (int, float)) and value == 0)
+    """Return whether an argument is given: neither None nor the number 0, NumPy's included."""
+    number = value if np.ma.is_masked(value) else as_scalar(value)
+    return number is not None and not (isinstance(number, (int, float)) and number == 0)
 
 
 def checked_duration(value: object, usual: float, end: float, what: str) -> float:

@@ -75,7 +75,7 @@ class ChannelSetup:
     def merge_keywords(self, **keywords: ByChannel) -> dict[str, ByChannel]:
         """Return keywords of :func:`.read_record` by name, each completed by the setup."""
         merged = dict(keywords)
-        for name in self.words.keys() & keywords.keys():
+        for name in (name for name in keywords if name in self.words):
             argument, known = keywords[name], self.words[name]
             if argument is None:
                 merged[name] = known

@@ -12,7 +12,7 @@ from ...errors import NOT_NUMBERS, InputError
 from ...lazy import xr
 from ...model.arguments import checked_word
 from ...model.ranges import checked_range
-from ...response.labels import Variable
+from ...response.labels import Variable, variable
 from ...running.provenance import describe_dataset
 from ..columns import source_column_label
 from ..pieces import Floats
@@ -85,13 +85,13 @@ class Channels:
         heading: str,
         variables: Mapping[str, Variable],
         coordinates: Mapping[str, Variable],
-        names: Sequence[str] = (),
         **settings: Any,
     ) -> xr.Dataset:
-        """Return the dataset of an analysis over all channels, or those with the given names."""
-        channel = "channel", np.array(names or self.names), {"long_name": "channel of the record"}
+        """Return the dataset of an analysis, over all channels unless coordinates name some."""
+        if "channel" not in coordinates:
+            coordinates = {"channel": channel_coordinate(self.names), **coordinates}
         words = analysis_attributes(analysis, heading, self.title, **settings)
-        return xr.Dataset(variables, {"channel": channel, **coordinates}, words)
+        return xr.Dataset(variables, coordinates, words)
 
 
 def checked_sample_rate(time: Floats, stated: Any) -> float:
@@ -129,6 +129,14 @@ def checked_finite(name: str, array: xr.DataArray, time: Floats) -> Floats:
 
 
 # -- results --------------------------------------------------------------------------------------
+
+
+def channel_coordinate(names: Sequence[str]) -> Variable:
+    return "channel", np.array(names), {"long_name": "channel of the record"}
+
+
+def frequency_coordinate(frequency: Floats) -> Variable:
+    return variable("frequency", frequency, "Hz", "frequency")
 
 
 def analysis_attributes(analysis: str, heading: str, title: str, **settings: Any) -> dict[str, Any]:

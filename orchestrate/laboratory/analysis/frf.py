@@ -12,7 +12,15 @@ from ...errors import InputError
 from ...lazy import xr
 from ...response.labels import Variable, variable, yes_or_no
 from ..record import FORCES
-from .channels import BOX, Channels, Floats, checked_finite, divide_into_segments
+from .channels import (
+    BOX,
+    Channels,
+    Floats,
+    channel_coordinate,
+    checked_finite,
+    divide_into_segments,
+    frequency_coordinate,
+)
 from .knocks import Knocks
 
 ESTIMATORS = ("H1", "H2", "Hv")
@@ -105,10 +113,13 @@ def frf(
         made["window_decay"] = variable((), knocks.window_decay, "1/s", text)
     text = f"estimator: noise on the response, on the {KINDS[driving][0]}, on both"
     estimator: Variable = "estimator", np.array(ESTIMATORS), {"long_name": text}
-    frequency = variable("frequency", spectra[0], "Hz", "frequency")
-    coordinates = {"estimator": estimator, "frequency": frequency}
+    coordinates = {
+        "estimator": estimator,
+        "channel": channel_coordinate(names),
+        "frequency": frequency_coordinate(spectra[0]),
+    }
     settings = {"window": window, "overlap": overlap, "excitation": driving}
-    return channels.result("frf", "Frequency response", made, coordinates, names, **settings)
+    return channels.result("frf", "Frequency response", made, coordinates, **settings)
 
 
 def driving_channel(record: xr.Dataset, channels: Channels) -> tuple[str, Floats]:

@@ -12,7 +12,7 @@ from ...lazy import xr
 from ...model.arguments import checked_list
 from ...model.ranges import checked_range
 from ...response.labels import variable
-from .channels import Channels, Floats
+from .channels import Channels, Floats, frequency_coordinate
 
 
 def shock_spectrum(
@@ -70,7 +70,7 @@ def shock_spectrum(
             "residual": variable(over, residual, "m/s2", f"{text} after the record"),
             "damping": variable((), ratio, "1", "damping ratio of the oscillators"),
         },
-        {"frequency": variable("frequency", natural, "Hz", "frequency")},
+        {"frequency": frequency_coordinate(natural)},
     )
 
 
@@ -81,10 +81,14 @@ def requested_or_default_frequencies(channels: Channels, requested: ArrayLike | 
         octaves = math.log2(highest * channels.duration)
         count = max(1, math.floor(octaves * 12))  # twelve in an octave
         return np.asarray(highest * 2.0 ** (np.arange(-count, 1) / 12))
-    natural, limit = np.array(checked_list("frequencies", requested)), 0.5 * channels.sample_rate
+    limit = 0.5 * channels.sample_rate
+    range_of_all = f"> 0 and <= {limit:g} Hz, half the sampling rate"
+    try:
+        natural = np.array(checked_list("frequencies", requested))
+    except InputError as error:
+        raise InputError(f"{error}, {range_of_all}") from None
     if not ((natural > 0.0) & (natural <= limit)).all():
-        text = f"expected numbers > 0 and <= {limit:g} Hz, half the sampling rate"
-        raise InputError(f"frequencies = {requested!r}: {text}")
+        raise InputError(f"frequencies = {requested!r}: expected numbers {range_of_all}")
     return natural
 
 

@@ -8,7 +8,14 @@ from ...lazy import xr
 from ...model.arguments import checked_word
 from ...model.ranges import checked_range
 from ...response.labels import variable
-from .channels import FEWEST_LINES, WINDOWS, Channels, divide_into_segments, samples_per_segment
+from .channels import (
+    FEWEST_LINES,
+    WINDOWS,
+    Channels,
+    divide_into_segments,
+    frequency_coordinate,
+    samples_per_segment,
+)
 
 
 def psd(
@@ -68,7 +75,7 @@ def psd(
             "averages": variable((), independent, "1", "independent averages"),
             "resolution": variable((), segments.resolution, "Hz", "distance of the lines"),
         },
-        {"frequency": variable("frequency", frequency, "Hz", "frequency")},
+        {"frequency": frequency_coordinate(frequency)},
         window=window,
         overlap=overlap,
     )
@@ -133,7 +140,7 @@ def spectrogram(
         },
         {
             "time": variable("time", time, "s", "time in the middle of the spectrum"),
-            "frequency": variable("frequency", transform.f, "Hz", "frequency"),
+            "frequency": frequency_coordinate(transform.f),
         },
         window=window,
     )

@@ -134,6 +134,13 @@ def test_a_wrong_setup_is_refused_by_name(tmp_path, wrong, names):
         read_record(written(tmp_path, "t;a;b;c"), wrong)
 
 
+def test_the_first_wrong_keyword_is_the_one_that_is_named(tmp_path):
+    setup = {"base": {"column": 1, "unit": "g", "sensitivity": "1 V/g", "scale": 2, "delay": 0}}
+    wrong = dict.fromkeys(("unit", "sensitivity", "scale", "delay"), {"fase": 1})
+    with pytest.raises(InputError, match="^unit"):
+        read_record(written(tmp_path, "t;a"), setup, **wrong)
+
+
 def test_a_setup_without_a_unit_says_where_to_write_it(tmp_path):
     path, setup = tmp_path / "a.csv", tmp_path / "setup.toml"
     path.write_text("Zeit;Tisch;oben\n0;0,1;0\n1;0,3;2\n2;-0,2;0\n3;0;-1\n")

@@ -178,6 +178,19 @@ def test_what_is_no_number_or_list_is_refused_in_one_line(odd):
             call()
 
 
+@pytest.mark.parametrize("nothing", [np.float64(0.0), np.int64(0), np.array(0)])
+def test_a_zero_of_numpy_is_a_duration_that_is_not_given(nothing):
+    sweep = SweptSine(first=10.0, last=14.0, rate=2.0, duration=nothing, acceleration=1.0)
+    assert sweep.duration == 2.0
+    shock = {"peak": 1.0, "length": 0.1}
+    assert Shock(**shock, duration=nothing).duration == Shock(**shock).duration
+
+
+def test_a_weak_random_vibration_has_pieces_that_are_numbers():
+    weak = Random(psd=[(20.0, 1e24), (1e4, 1e24)], duration=0.1, rms=1e-120)
+    assert 0.0 < np.abs(weak.pieces().derivatives[:, 0]).max() < 1e-119
+
+
 def test_sum_of_signals():
     sweep = SweptSine(first=5.0, last=9.0, duration=2.0, acceleration=1.0)
     shock = Shock(peak=3.0, length=0.1, delay=0.5)

@@ -197,8 +197,12 @@ def test_damaged_text_is_refused(tmp_path, text, words):
     refused(path, words)
 
 
-@pytest.mark.parametrize("ending", [".uff", ".mat", ".nc", ".wav", ".tdms"])
-@pytest.mark.parametrize("damage", ordinary(["cut", "noise"]))
+ENDINGS = (".uff", ".mat", ".nc", ".wav", ".tdms")
+DAMAGES = [(ending, damage) for ending in ENDINGS for damage in ("cut", "noise")]
+NOT_SLOW = [one for one in DAMAGES if one[1] == "cut" or one[0] in (".mat", ".nc")]
+
+
+@pytest.mark.parametrize(("ending", "damage"), ordinary(DAMAGES, NOT_SLOW, several_names=True))
 def test_damaged_files_are_refused(tmp_path, ending, damage):
     path = tmp_path / f"test{ending}"
     if ending == ".wav":
@@ -347,6 +351,9 @@ def test_labviews_text_is_read_and_no_pickle_beside_it(tmp_path, monkeypatch):
     assert np.allclose(data.acceleration1, G * np.array([-0.1, 2.0, 3.5, 4.0, 1.0]))
     path.write_text(LVM.replace("Tisch\tSp", "TischSp"))
     refused(path, "names of 1 channels; expected 2")
+    rows = LVM.replace("\tComment", "").splitlines()
+    path.write_text("\n".join(row + "\t7,0" * row.startswith("0,00") for row in rows))
+    refused(path, "4 columns below 3 names")
 
 
 def test_a_sampling_rate_stands_for_clock_times_and_finds_a_counter(tmp_path):
