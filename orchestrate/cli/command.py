@@ -205,7 +205,9 @@ class Command(Options, ABC):
             for name, one in new.items():
                 first = found[name].group if name in found and name in written else group
                 names = one.names or (option_names([name]),)
-                found[name] = replace(one, names=names, group=first)
+                flag = name in written and one.kind is bool  # as annotated, never None
+                default = False if flag else one.default
+                found[name] = replace(one, default=default, names=names, group=first)
         return dict(sorted(found.items(), key=lambda row: vars(row[1].group).get("rank", 2)))
 
     @classmethod

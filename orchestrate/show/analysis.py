@@ -208,7 +208,7 @@ def draw_orders(results: Results) -> Figure:
 
 
 def draw_harmonics(results: Results) -> Figure:
-    words, orders = "order {:g}\nover order 1 in %", first_result(results).order.values[:2].tolist()
+    words, orders = "order {:g}\nover order 1 in %", first_result(results).order.values[:2]
     rows = [PanelRow("distortion\n(THD) in %", 1.3, lambda data: 100.0 * data.distortion)]
     rows += [
         PanelRow(words.format(n), 1.0, order_reader(n, "ratio", 100.0)) for n in map(float, orders)

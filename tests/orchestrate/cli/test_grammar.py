@@ -48,6 +48,11 @@ def test_every_default_is_that_of_the_function_and_in_the_help():
     assert compared > 40
 
 
+def test_an_attribute_that_is_annotated_bool_is_one():
+    assert cli.COMMANDS["build"]().plain is cli.COMMANDS["sweep"]().debug is False
+    assert cli.COMMANDS["analyse"]().resample is None  # of a function: what a setup file says
+
+
 @pytest.mark.parametrize("program", ["vibroimpact", "python -m orchestrate"])
 def test_help_has_quantities_and_examples_that_can_be_typed(capsys, monkeypatch, program):
     monkeypatch.setattr(sys, "argv", [f"/bin/{program}"])
