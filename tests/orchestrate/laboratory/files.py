@@ -32,9 +32,9 @@ X_Value\tTisch\tSpitze\tComment
 """
 
 
-def random_structure(seed, restitution=(0.5, 0.9), damping=(0.003, 0.02), **more):
+def random_structure(seed, restitution=(0.5, 0.9), damping=(0.003, 0.02), lowest=30.0, **more):
     draw = np.random.default_rng(seed).uniform
-    m1, f1 = draw(0.5, 2.0), draw(30.0, 60.0)
+    m1, f1 = draw(0.5, 2.0), draw(lowest, 60.0)
     return Structure.from_halves(
         **{"m1": m1, "m2": m1 * draw(0.4, 2.0), "f1": f1, "f2": f1 * draw(1.1, 1.8)},
         **{"zeta1": draw(*damping), "zeta2": draw(*damping), "e": draw(*restitution), **more},

@@ -95,7 +95,7 @@ def colliding_numbers(figure, renderer) -> list[tuple[str, str]]:
     return found
 
 
-@pytest.mark.parametrize("name", ordinary(PICTURES, PICTURES[::3]))
+@pytest.mark.parametrize("name", ordinary(PICTURES, {*PICTURES[::3], "branch"}))
 def test_a_picture_is_readable_and_says_what_it_shows(answers, name):
     figure = orchestrate.plot(answers[name])
     texts = " ".join(all_is_readable(figure))
