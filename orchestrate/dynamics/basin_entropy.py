@@ -93,10 +93,10 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
     sizes = 2 ** np.arange(1, max_size.bit_length())
     fractions = np.array([np.mean(box_entropies(labels, each) > 0.0) for each in sizes])
     exponent = error = math.nan
-    if np.count_nonzero(fractions) >= 3:  # of boxes, through which a line is fitted in logs
+    known = fractions > 0.0  # not NaN, where the masses overlap in each box of a size
+    if np.count_nonzero(known) >= 3:  # of boxes, through which a line is fitted in logs
         from scipy.stats import linregress
 
-        known = fractions > 0.0
         sides = sizes[known] - 1.0  # from start to start
         line = linregress(np.log(sides), np.log(fractions[known]))
         exponent, error = float(line.slope), float(line.stderr)

@@ -124,3 +124,11 @@ def test_one_basin_has_no_boundary():
     assert float(found.basin_entropy) == 0.0
     assert math.isnan(float(found.boundary_basin_entropy))
     assert math.isnan(float(found.uncertainty_exponent))
+
+
+def test_sizes_of_which_all_boxes_overlap_are_no_points_of_the_line():
+    labels = np.random.default_rng(0).integers(0, 2, (40, 40))
+    labels[:, 5:] = -1  # so all boxes of 8 x 8 starts have some
+    found = basin_entropy(labels)
+    assert np.isnan(found.uncertain_fraction.values).tolist() == [False, False, True]
+    assert math.isnan(float(found.uncertainty_exponent))
