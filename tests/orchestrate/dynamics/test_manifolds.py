@@ -227,6 +227,7 @@ def test_the_first_piece_ends_where_its_image_begins(instances, sign):
     image = job.make_point_function(instances[0], saddle, sign)
     end, begin, saddle_state = image(1.0 - 1e-15).state, image(1.0).state, saddle.state
     assert np.abs(begin - end).max() < 1e-3 * np.abs(end - saddle_state).max()
+    assert sign * np.diff((begin - saddle_state)[:2]) > 0.0  # the gap grows, or falls
 
 
 def job_fields():

@@ -55,6 +55,7 @@ SPREAD = (1e-6 + 0.5e-6 / 9.0) ** 0.5
         (thirds(120, 1e-3, 0.0, 0.1), (1.3, 1e-3)),  # the later half alone,
         (thirds(120, 1e-3, 0.53e-3), NEVER),  # and all of it
         (thirds(102, 2e-5, 0.0), (1.3 - 2e-5 / 51.0, 1e-4)),  # thirds of 17 blocks
+        (thirds(104, 2e-5, 0.0), (1.3 - 2e-5 / 51.0, 1e-4)),  # of the 52 later ones but the first
     ],
 )
 def test_each_threshold_of_a_settled_speed(means, expected):
