@@ -99,9 +99,8 @@ class Bonded(Hypothesis):
         return mass.displacements(cubics, 1.0 / evidence.sample_rate, bound)[np.newaxis]
 
     def reported_parameters(self, values: Values, evidence: Evidence) -> dict[str, float]:
-        mass = self.single_mass(values, evidence)
-        names = ("f", "zeta", *self.extra)
-        return {name: getattr(mass, name, values.get(name, 0.0)) for name in names}
+        known = {**values, **vars(self.single_mass(values, evidence))}
+        return {name: known[name] for name in ("f", "zeta", *self.extra)}
 
 
 class NonlinearSpring(Bonded):

@@ -157,7 +157,8 @@ def sensor_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> It
         return
     order, best = min(fits.items(), key=lambda item: item[1].misfit)
     if best.misfit < min(settings.misfit, straight.misfit / settings.derived):
-        read, (motion, unit) = name if order > 0 else "base", QUANTITIES[abs(order)]
+        read = name if order > 0 else "base"
+        motion, unit = QUANTITIES[abs(order)]
         thousands = np.log10(abs(best.factor)) / 3.0 * np.sign(order)
         prefix = ("", "m", "u", "n")[int(np.clip(np.rint(thousands), 0, 3))]
         text = f"{read} moves as a {motion}, not an acceleration, at {best.frequency:.3g} Hz"
@@ -287,8 +288,8 @@ def hum_notes(orders: RecordOrders, row: int, settings: WiringSettings) -> Itera
         if away.sum() < settings.fewest:
             continue
         beside = (mains + off for off in (0.0, *settings.beside))  # Hz, itself the first
-        turned = (values * np.exp(-1j * TURN * hertz * channels.time) for hertz in beside)
-        lines = np.array([[weights @ one[k : k + count] for k in starts] for one in turned])
+        shifted = (values * np.exp(-1j * TURN * hertz * channels.time) for hertz in beside)
+        lines = np.array([[weights @ one[k : k + count] for k in starts] for one in shifted])
         size = np.median(np.abs(lines[:, away]), axis=1)
         pairs = away[1:] & away[:-1]
         turned = (lines[0, 1:] * lines[0, :-1].conj())[pairs]

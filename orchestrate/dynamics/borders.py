@@ -187,9 +187,9 @@ def border(
             f"over = {names!r}: expected two different names, the first one that of start, "
             f"{start.attrs.get('over')!r}"
         )
-    rows: Any = limits
+    given: Any = limits
     try:
-        pairs = tuple(branches.checked_limits(*each) for each in zip(names, rows, strict=True))
+        pairs = tuple(branches.checked_limits(*each) for each in zip(names, given, strict=True))
     except NOT_NUMBERS:
         expected = "expected a lower and an upper one for each parameter"
         raise InputError(f"limits = {limits!r}: {expected}") from None

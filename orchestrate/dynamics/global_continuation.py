@@ -104,8 +104,8 @@ class AttractorsAtValue:
         """Continue a neighbour's attractor here; return its index here, and how."""
         decider, faces = self.decider, motion.point.faces_from_states(motion.states[0])
         reached = decider.decide(decider.point.states_from_faces(faces)).motion
-        leads_away = may_be_different_branches(motion, reached, decider.settings.neighbour)
-        if motion.orbit is not None and leads_away:
+        near = decider.settings.neighbour
+        if motion.orbit is not None and may_be_different_branches(motion, reached, near):
             continued = decider.continue_orbit(motion)
             if continued is not None:
                 return self.find_or_add(continued), BY_NEWTON

@@ -231,7 +231,7 @@ def located_variables(
     values = orbit_coordinates(setting, rows, prefix)
     data |= {f"{prefix}_{label}": values[name] for name, label in parameters.items()}
     variables = orbit_variables(setting, rows, prefix)
-    for name in filter(kept.__contains__, variables):
+    for name in (name for name in variables if name in kept):
         dims, column, attributes = variables[name]
         prefixed = tuple(f"{prefix}_node" if dim == "node" else dim for dim in dims)
         data[f"{prefix}_{name}"] = prefixed, column, attributes

@@ -135,17 +135,17 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
 
     def zero_is_bifurcation(self, kind: Kind, point: OrbitPoint, part: float) -> bool:
         # the product of two real multipliers may be 1 as well as that of a pair on the unit circle
-        pairs = np.abs(np.abs(point.upper_multipliers) - 1.0) < 1e-6
-        return part > 1e-7 and (kind != Kind.TORUS or bool(pairs.any()))
+        if part <= 1e-7 or kind != Kind.TORUS:
+            return part > 1e-7
+        return bool((np.abs(np.abs(point.upper_multipliers) - 1.0) < 1e-6).any())
 
     def locate_bifurcations(self, step: BranchStep[OrbitPoint]) -> list[Bifurcation[OrbitPoint]]:
         located, before = super().locate_bifurcations(step), step.before.orbit
         periods = before.sequence.periods
         for i, each in enumerate(located):
             # at a fold an orbit of several periods may become that of half of them
-            if each.kind == Kind.FOLD and (
-                least_periods(each.point.orbit, 1e-4) < periods == least_periods(before)
-            ):
+            may_halve = each.kind == Kind.FOLD and least_periods(before) == periods
+            if may_halve and least_periods(each.point.orbit, 1e-4) < periods:
                 return [*located[:i], replace(each, kind=Kind.HALVING)]
         return located
 

@@ -37,8 +37,7 @@ class Bifurcation(Generic[Point]):
     """A bifurcation located on a branch: its kind, where it lies, and the branch's point there."""
 
     kind: Kind
-    # in a step its arclength; on a branch its number among the points, between two points no whole
-    # one
+    # of one located in a step: its arclength; of one on a branch: its number among the points
     position: float
     point: Point
 
@@ -126,10 +125,11 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
                 step, located = self.take_step(before, rates)
                 rates = {kind: step.mean_slope(kind) for kind in self.kinds}
                 for each in located:
-                    part = each.position / step.length
-                    if each.kind in self.ending_kinds:  # the last one
-                        part, step.end, step.last_points = 1.0, KINDS[each.kind], [each.point]
-                    segment.add_bifurcation(each.kind, each.point, part)
+                    if each.kind in self.ending_kinds:
+                        step.end, step.last_points = KINDS[each.kind], [each.point]
+                        segment.add_bifurcation(each.kind, each.point, 1.0)
+                        break
+                    segment.add_bifurcation(each.kind, each.point, each.position / step.length)
                 segment.points += step.last_points
                 segment.end = step.end
         except SOLVER_ERRORS:

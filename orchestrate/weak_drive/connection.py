@@ -27,7 +27,15 @@ UNITS = {
     **dict(zip(FORCE, ("N", "N/s", "N/s2", "N/s3"), strict=True)),
     **dict.fromkeys(PUSHES, "N"),
 }
-EXPONENTS = {name: unit.exponents for name, word in UNITS.items() if (unit := parse_unit(word))}
+
+
+def exponents_of(word: str) -> Mapping[str, int]:
+    unit = parse_unit(word)
+    assert unit is not None, word
+    return unit.exponents
+
+
+EXPONENTS = {name: exponents_of(word) for name, word in UNITS.items()}
 OURS = {name: name for name in (*MOTION, *FORCE)}  # of the package's own drives
 EXPECTED = f"expected some of {', '.join(MOTION)}, and box_force; or {' or '.join(PUSHES)}"
 

@@ -130,10 +130,11 @@ class DriveBranchJob(DriveJob):
         self, shooter: Shooter, speeds: tuple[float, float], find_start: Callable[[], Motion]
     ) -> Leg:
         try:
-            start, settings = find_start(), ContinuationSettings(self.longest, self.most - 1)
-            return DriveTracer(shooter, start, speeds, settings).trace(start)
+            start = find_start()
         except SOLVER_ERRORS:
             return Leg(end=NO_START)
+        settings = ContinuationSettings(self.longest, self.most - 1)
+        return DriveTracer(shooter, start, speeds, settings).trace(start)
 
     def simulate_and_find_motion(self, shooter: Shooter, speed: float, up: bool) -> Motion:
         """Find the motion at a speed, over omega, that is followed to higher or lower ones."""

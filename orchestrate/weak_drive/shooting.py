@@ -131,9 +131,9 @@ class Shooter:
         masses = values[:count] * (4 // count)
         starts = dict(zip(MASSES, masses, strict=True))
         oscillator.initialize(**oscillator_start_values(self.structure), **starts)
-        starts = dict(zip(STARTS, values[count:], strict=False))
-        starts |= {"angle_start": self.angle, "voltage": voltage}
-        shaker.initialize(**self.drive.parameters(), **starts)
+        own = dict(zip(STARTS, values[count:], strict=False))
+        own |= {"angle_start": self.angle, "voltage": voltage}
+        shaker.initialize(**self.drive.parameters(), **own)
         if self.master is None:
             self.master = Master(oscillator, shaker, Scheme(h))
         else:

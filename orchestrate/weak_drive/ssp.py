@@ -110,7 +110,11 @@ def add_component(elements: ET.Element, name: str, one: Component, version: str)
             unit = {"unit": one.unit(port)} if one.unit(port) else {}
             add_element(connector, f"ssc:{REAL[version]}", **unit)
     bindings = add_element(component, "ssd:ParameterBindings")
-    add_element(bindings, "ssd:ParameterBinding", source=f"resources/{name}.ssv")
+    add_element(bindings, "ssd:ParameterBinding", source=parameter_file_path(name))
+
+
+def parameter_file_path(component: str) -> str:
+    return f"resources/{component}.ssv"
 
 
 def add_master_annotation(system: ET.Element, step: float) -> None:
@@ -273,7 +277,7 @@ def write_ssp(
     system = system_description_xml(text, times, components, links, version)
     files = {"SystemStructure.ssd": system}
     for name, one in components.items():
-        files[f"resources/{name}.ssv"] = parameter_set_xml(one.values, version)
+        files[parameter_file_path(name)] = parameter_set_xml(one.values, version)
     files |= {f"resources/{one.path.name}": one.path.read_bytes() for one in components.values()}
     return write_atomically(path, lambda temporary: write_archive(temporary, files))
 
