@@ -91,7 +91,8 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
     if not entropies.size:
         raise InputError(f"box = {size}: the masses overlap in each box; expected a smaller one")
     sizes = 2 ** np.arange(1, max_size.bit_length())
-    fractions = np.array([np.mean(box_entropies(labels, each) > 0.0) for each in sizes])
+    uncertain = [box_entropies(labels, each) > 0.0 for each in sizes]
+    fractions = np.array([boxes.mean() if boxes.size else math.nan for boxes in uncertain])
     exponent = error = math.nan
     known = fractions > 0.0  # not NaN, where the masses overlap in each box of a size
     if np.count_nonzero(known) >= 3:  # of boxes, through which a line is fitted in logs

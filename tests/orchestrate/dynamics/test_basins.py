@@ -126,6 +126,7 @@ def test_one_basin_has_no_boundary():
     assert math.isnan(float(found.uncertainty_exponent))
 
 
+@pytest.mark.filterwarnings("error")
 def test_sizes_of_which_all_boxes_overlap_are_no_points_of_the_line():
     labels = np.random.default_rng(0).integers(0, 2, (40, 40))
     labels[:, 5:] = -1  # so all boxes of 8 x 8 starts have some
