@@ -61,8 +61,12 @@ def imported_files(name: str, source: bytes) -> tuple[str, ...]:
 def import_statements(source: bytes) -> list[ast.stmt]:
     """Return a module's import statements, nested ones too: a tree of the rest takes long."""
     text = "\n".join(IMPORT.findall(source.decode()))
+    return parse(text).body
+
+
+def parse(source: str) -> ast.Module:
     with parsing:
-        return ast.parse(text).body
+        return ast.parse(source)
 
 
 @functools.cache

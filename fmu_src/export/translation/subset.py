@@ -12,6 +12,8 @@ import tokenize
 from collections.abc import Sequence
 from types import FunctionType, ModuleType
 
+from ..sources import parse
+
 Block = list[ast.stmt]
 
 
@@ -19,7 +21,7 @@ Block = list[ast.stmt]
 def parse_function(function: FunctionType) -> tuple[ast.FunctionDef, int, str]:
     lines, first = inspect.getsourcelines(function)
     source = textwrap.dedent("".join(lines))
-    tree = ast.parse(source).body[0]
+    tree = parse(source).body[0]
     assert isinstance(tree, ast.FunctionDef)
     return tree, first, source
 
@@ -56,7 +58,7 @@ def imported_names(module: ModuleType) -> dict[str, tuple[str, str]]:
     known: dict[str, tuple[str, str]] = {}
     if not getattr(module, "__file__", "").endswith(".py"):  # written in C, as math
         return known
-    for node in ast.parse(inspect.getsource(module)).body:
+    for node in parse(inspect.getsource(module)).body:
         if isinstance(node, ast.ImportFrom) and node.level:
             package = module.__name__.split(".")[: -node.level]
             source = ".".join([*package, *([node.module] if node.module else [])])
