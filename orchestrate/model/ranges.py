@@ -191,40 +191,38 @@ LEVEL = Quantity("level", "m/s2", "Peak acceleration a Omega^2 of the box", SMAL
 COMPLETE = ({"eta"}, {"frequency", "amplitude"}, {"frequency", "level"})
 
 
+def quantities_from_rows(*rows: tuple[str, str, str, tuple[float, float]]) -> dict[str, Quantity]:
+    return {name: Quantity(name, unit, text, *ends) for name, unit, text, ends in rows}
+
+
 POSITIVE, NOT_NEGATIVE, RATIO = (SMALLEST, LARGEST), (0.0, LARGEST), (0.0, LARGEST / 2.0)
-DATASHEET = {  # of an electrodynamic shaker
-    name: Quantity(name, unit, description, *ends)
-    for name, unit, description, ends in (
-        ("rated_force", "N", "Peak of a sine", POSITIVE),
-        ("moving_mass", "kg", "Of the bare table with its coil", POSITIVE),
-        ("suspension_resonance", "Hz", "Of the bare table", POSITIVE),
-        ("amplifier_power", "VA", "Of a sine", POSITIVE),
-        ("travel", "m", "Peak to peak; 0: no stops", NOT_NEGATIVE),
-        ("payload", "kg", "What is fixed to the table", NOT_NEGATIVE),
-        ("damping_ratio", "1", "Of the bare table with its coil open", RATIO),
-    )
-}
-RATIO_QUANTITIES = {
-    name: Quantity(name, unit, description, *ends)
-    for name, unit, description, ends in (
-        ("omega", "rad/s", "Frequency unit sqrt(k1/m1), (2)", POSITIVE),
-        ("mu", "1", "Mass ratio m2/m1, (2)", POSITIVE),
-        ("kappa", "1", "Stiffness ratio k2/k1, (2)", POSITIVE),
-        ("D", "1", "Damping ratio of both masses, (8)", RATIO),
-        ("D1", "1", "Damping ratio of mass 1, (8)", RATIO),
-        ("D2", "1", "Damping ratio of mass 2, (8)", RATIO),
-        ("f1", "Hz", "Natural frequency of mass 1 alone", POSITIVE),
-        ("f2", "Hz", "Natural frequency of mass 2 alone", POSITIVE),
-        ("zeta1", "1", "Damping ratio of mass 1 at its own frequency", RATIO),
-        ("zeta2", "1", "Damping ratio of mass 2 at its own frequency", RATIO),
-        ("eta", "1", "Frequency ratio Omega/omega, (6)", (1e-6, 1e6)),
-        ("beta", "1", "Mass ratio m1/M_t", POSITIVE),
-        ("epsilon", "1", "The unbalance's share in the inertia, S^2/(J M_t)", POSITIVE),
-        ("b", "1", "Slope of the torque line, K^2/(R_a J omega)", POSITIVE),
-        ("Omega_b", "1", "The box's own frequency over omega", RATIO),
-        ("D_b", "1", "Damping ratio of the box, c_b/(2 omega M_t)", RATIO),
-    )
-}
+DATASHEET = quantities_from_rows(  # of an electrodynamic shaker
+    ("rated_force", "N", "Peak of a sine", POSITIVE),
+    ("moving_mass", "kg", "Of the bare table with its coil", POSITIVE),
+    ("suspension_resonance", "Hz", "Of the bare table", POSITIVE),
+    ("amplifier_power", "VA", "Of a sine", POSITIVE),
+    ("travel", "m", "Peak to peak; 0: no stops", NOT_NEGATIVE),
+    ("payload", "kg", "What is fixed to the table", NOT_NEGATIVE),
+    ("damping_ratio", "1", "Of the bare table with its coil open", RATIO),
+)
+RATIO_QUANTITIES = quantities_from_rows(
+    ("omega", "rad/s", "Frequency unit sqrt(k1/m1), (2)", POSITIVE),
+    ("mu", "1", "Mass ratio m2/m1, (2)", POSITIVE),
+    ("kappa", "1", "Stiffness ratio k2/k1, (2)", POSITIVE),
+    ("D", "1", "Damping ratio of both masses, (8)", RATIO),
+    ("D1", "1", "Damping ratio of mass 1, (8)", RATIO),
+    ("D2", "1", "Damping ratio of mass 2, (8)", RATIO),
+    ("f1", "Hz", "Natural frequency of mass 1 alone", POSITIVE),
+    ("f2", "Hz", "Natural frequency of mass 2 alone", POSITIVE),
+    ("zeta1", "1", "Damping ratio of mass 1 at its own frequency", RATIO),
+    ("zeta2", "1", "Damping ratio of mass 2 at its own frequency", RATIO),
+    ("eta", "1", "Frequency ratio Omega/omega, (6)", (1e-6, 1e6)),
+    ("beta", "1", "Mass ratio m1/M_t", POSITIVE),
+    ("epsilon", "1", "The unbalance's share in the inertia, S^2/(J M_t)", POSITIVE),
+    ("b", "1", "Slope of the torque line, K^2/(R_a J omega)", POSITIVE),
+    ("Omega_b", "1", "The box's own frequency over omega", RATIO),
+    ("D_b", "1", "Damping ratio of the box, c_b/(2 omega M_t)", RATIO),
+)
 
 
 def construct_or_explain(
